@@ -1,0 +1,76 @@
+"""Finds techniques and phenomena by walking folders: adding one edits no shared file."""
+
+from __future__ import annotations
+
+import functools
+import importlib
+import inspect
+import pkgutil
+from pathlib import Path
+from typing import Annotated, Any, Union
+
+from pydantic import Field
+
+import renderer
+from renderer.core.errors import InputError, UmbrageError
+from renderer.core.params import _kind_of
+from renderer.core.technique import Phenomenon, Technique
+
+SHADERS = Path(renderer.__file__).parent.parent / "shaders"
+
+
+@functools.cache
+def techniques(phenomenon: str, slot: str) -> dict[str, type[Technique]]:
+    """Techniques of a slot by kind, in the order of their names.
+
+    Raises:
+        UmbrageError: a file whose stem is not its technique's kind, or a technique without its GLSL file.
+    """
+    package = importlib.import_module(f"renderer.{phenomenon}.{slot}")
+    found: dict[str, type[Technique]] = {}
+    for module in sorted(m.name for m in pkgutil.iter_modules(package.__path__)):
+        loaded = importlib.import_module(f"{package.__name__}.{module}")
+        for value in vars(loaded).values():
+            if not (inspect.isclass(value) and issubclass(value, Technique) and value.__module__ == loaded.__name__):
+                continue
+            if _kind_of(value) != module:
+                raise UmbrageError(f"{loaded.__name__}: the technique's kind is {_kind_of(value)!r}, not its file's name")
+            if not (SHADERS / glsl_file(phenomenon, slot, module)).is_file():
+                raise UmbrageError(f"{loaded.__name__}: no {glsl_file(phenomenon, slot, module)} beside it")
+            found[module] = value
+    return found
+
+
+def glsl_file(phenomenon: str, slot: str, kind: str) -> str:
+    """Path of a technique's GLSL file, relative to the shader root."""
+    return f"{phenomenon}/{slot}/{kind}.glsl"
+
+
+def slot_union(phenomenon: str, slot: str) -> Any:
+    """The discriminated union of a slot's techniques, as a field annotation."""
+    members = tuple(techniques(phenomenon, slot).values())
+    if len(members) == 1:
+        return members[0]
+    return Annotated[Union[members], Field(discriminator="kind")]  # noqa: UP007 - built at run time
+
+
+@functools.cache
+def phenomena() -> dict[str, Phenomenon]:
+    """Every phenomenon of the checkout by name: each package `renderer/<name>/phenomenon.py` with its `PHENOMENON`."""
+    found = {}
+    for entry in sorted(Path(renderer.__file__).parent.iterdir()):
+        if (entry / "phenomenon.py").is_file():
+            found[entry.name] = importlib.import_module(f"renderer.{entry.name}.phenomenon").PHENOMENON
+    return found
+
+
+def phenomenon(name: str) -> Phenomenon:
+    """The phenomenon called `name`.
+
+    Raises:
+        InputError: there is none.
+    """
+    known = phenomena()
+    if name not in known:
+        raise InputError("scene", "there is no such scene", ", ".join(known))
+    return known[name]

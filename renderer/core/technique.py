@@ -1,0 +1,119 @@
+"""What a phenomenon, a slot and a technique are."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any, ClassVar, Protocol
+
+import numpy as np
+
+from renderer.core.params import Model
+
+Arrays = Mapping[str, np.ndarray]
+
+
+class Technique(Model):
+    """One published way to fill a slot.
+
+    A subclass is one Python file, one GLSL file of pure functions and one test, all of the same stem.
+    Its discriminator `kind` is that stem: `kind: Literal["ray_march"] = "ray_march"`.
+    """
+
+    title: ClassVar[str]
+    caption: ClassVar[str]
+    """One line: what it is."""
+    paper: ClassVar[str]
+    """Who published it: author, year, section."""
+    requires: ClassVar[tuple[int, int]] = (3, 3)
+    """Lowest OpenGL version."""
+    textures: ClassVar[Mapping[str, str]] = {}
+    """Samplers the GLSL reads, by name, with their GLSL type; declared for it as `<slot>_<name>`."""
+
+
+@dataclass(frozen=True)
+class Slot:
+    """A place in a phenomenon that techniques fill.
+
+    Attributes:
+        name: as in the document, `shadow`.
+        title, help: for people.
+        contract: the GLSL signature each technique must define, with units.
+        default: kind of the default technique.
+    """
+
+    name: str
+    title: str
+    help: str
+    contract: str
+    default: str
+
+
+@dataclass(frozen=True)
+class Bake:
+    """A precomputation: a pure function of plain JSON arguments and of other bakes' arrays.
+
+    Attributes:
+        name: role of its result in the scene, as `pattern`.
+        function: module-level function `(arguments, inputs, progress) -> Arrays`, picklable; `progress(fraction, words)` raises
+            `Cancelled` when the work is no longer wanted.
+        arguments: JSON values; with the function's name and version, the cache key.
+        inputs: bakes whose arrays it needs.
+        version: raised when the function's result changes.
+        seconds: what it is expected to take on two cores, to announce the cost before it starts.
+    """
+
+    name: str
+    function: Callable[[dict[str, Any], dict[str, Arrays], Callable[[float, str], None]], Arrays]
+    arguments: dict[str, Any]
+    inputs: tuple[Bake, ...] = ()
+    version: int = 1
+    seconds: float = 1.0
+
+
+class SceneRenderer(Protocol):
+    """Draws one phenomenon; lives on the GL thread. Made by `Phenomenon.open(gl)`."""
+
+    def load(self, baked: Mapping[str, Arrays]) -> None:
+        """Upload what was baked (by bake name); called again when any of it changed."""
+
+    def draw(self, state: Any, width: int, height: int, sample: int) -> Any:
+        """Draw sample number `sample` (its sub-pixel position follows from the number) as linear radiance,
+        premultiplied, into a float target of its own, and return that texture."""
+
+    def probe(self, state: Any, x: float, y: float) -> dict[str, Any]:
+        """What lies at a point of the picture (x, y in [0, 1], row 0 at the top): position, elevation, radiance."""
+
+    def release(self) -> None:
+        """Free every GL object."""
+
+
+@dataclass(frozen=True)
+class Phenomenon:
+    """One of the four systems.
+
+    Attributes:
+        name: as in the document's `scene`.
+        state: the pydantic model of its whole state document.
+        presets: named patches of the default document, with a title each.
+        bakes: what a state needs precomputed, inputs first.
+        open: makes its renderer on the GL thread.
+    """
+
+    name: str
+    title: str
+    help: str
+    slots: tuple[Slot, ...]
+    state: type[Model]
+    presets: Mapping[str, Preset]
+    bakes: Callable[[Any], list[Bake]]
+    open: Callable[[Any], SceneRenderer]
+
+
+@dataclass(frozen=True)
+class Preset:
+    """A named patch of the default document."""
+
+    title: str
+    help: str
+    patch: dict[str, Any] = field(default_factory=dict)
