@@ -1,0 +1,97 @@
+"""Arrays out of a stranger's .npz: nothing is allocated before its header was believed, and nothing is unpickled."""
+
+from __future__ import annotations
+
+import zipfile
+import zlib
+from collections.abc import Collection
+from pathlib import Path
+
+import numpy as np
+from numpy.lib import format as npy
+
+from renderer.core.errors import AssetError, LimitError
+
+MAX_MEMBERS = 64
+"""An archive of ours holds a handful of arrays; more is no .npz of this kind."""
+
+MAX_HEADER = 4096
+"""Characters of an .npy header: a plain shape and type need about a hundred."""
+
+
+def npz_names(path: Path) -> list[str]:
+    """Names of the arrays in the archive at `path`.
+
+    Raises:
+        AssetError: not a zip archive, or one with more members than an .npz of ours can have.
+    """
+    try:
+        with zipfile.ZipFile(path) as archive:
+            names = archive.namelist()
+    except (zipfile.BadZipFile, OSError, ValueError, NotImplementedError) as failure:
+        raise AssetError("file", "is no complete .npz archive") from failure
+    if len(names) > MAX_MEMBERS:
+        raise AssetError("file", f"holds {len(names)} members", f"at most {MAX_MEMBERS}")
+    return [name.removesuffix(".npy") for name in names if name.endswith(".npy")]
+
+
+def read_npz(path: Path, wanted: Collection[str], max_bytes: int) -> dict[str, np.ndarray]:
+    """The arrays of `wanted` that the archive at `path` holds.
+
+    Args:
+        path: the .npz file.
+        wanted: array names; a name that the file lacks is left out, other members are never opened.
+        max_bytes: most bytes of one array, as its header claims and as it decompresses.
+
+    Raises:
+        AssetError: naming the array (or `file`) that is damaged, truncated or not plain numbers or text.
+        LimitError: naming the array whose header claims more than `max_bytes`.
+    """
+    found = [name for name in npz_names(path) if name in wanted]
+    result: dict[str, np.ndarray] = {}
+    with zipfile.ZipFile(path) as archive:
+        for name in found:
+            try:
+                with archive.open(f"{name}.npy") as stream:
+                    result[name] = _read_array(stream, name, max_bytes)
+            except (
+                zipfile.BadZipFile,
+                zlib.error,
+                EOFError,
+                OSError,
+                RuntimeError,
+                NotImplementedError,
+                KeyError,
+            ) as failure:
+                raise AssetError(name, "is damaged or cut short in the file") from failure
+    return result
+
+
+def _read_array(stream: zipfile.ZipExtFile, name: str, max_bytes: int) -> np.ndarray:
+    """One array of the archive: its header first, then exactly the bytes that the header promises."""
+    try:
+        version = npy.read_magic(stream)  # type: ignore[arg-type]
+        readers = {(1, 0): npy.read_array_header_1_0, (2, 0): npy.read_array_header_2_0}
+        if version not in readers:
+            raise AssetError(name, f"is written in .npy version {version[0]}.{version[1]}", "version 1.0 or 2.0")
+        shape, fortran, dtype = readers[version](stream, max_header_size=MAX_HEADER)  # type: ignore[call-arg]
+    except (ValueError, SyntaxError, TypeError, RecursionError, MemoryError) as failure:
+        raise AssetError(name, "has a damaged array header") from failure
+    if dtype.hasobject or dtype.kind not in "biufU":
+        raise AssetError(name, "holds Python objects or records", "plain numbers or text")
+    count = 1
+    for length in shape:
+        count *= int(length)
+    claimed = count * dtype.itemsize
+    if min(shape, default=1) < 0 or claimed > max_bytes:
+        raise LimitError(name, f"claims {claimed:,} bytes for shape {tuple(shape)}", f"at most {max_bytes:,} bytes")
+    data = stream.read(claimed + 1)
+    if len(data) != claimed:
+        raise AssetError(
+            name,
+            f"has {min(len(data), claimed):,} bytes or more where its header claims {claimed:,}"
+            if len(data) > claimed
+            else f"is cut short: {len(data):,} of {claimed:,} bytes",
+        )
+    array = np.frombuffer(data, dtype=dtype)
+    return array.reshape(shape, order="F" if fortran else "C")
