@@ -4,10 +4,12 @@ One bake gives three tables; `sky_for` takes from them what one sun needs: two c
 the sky (view elevation x azimuth from the sun), which `shaders/lib/sky.glsl` reads with one fetch.
 
 Units: W m-2 and W m-2 sr-1, where each of the three bands stands for the whole solar constant. So sunlight above the
-air is white, (1, 1, 1) times 1361 W m-2, and colours come from the air alone (as in Hillaire 2020, with unit irradiance).
+air is white, (1, 1, 1) times 1361 W m-2, and all colour comes from the air (as in Hillaire 2020, with unit irradiance).
 
 Deviations: haze of one kind, a spherical Earth, no refraction, no polarisation; multiple scattering is isotropic and
-summed in closed form. It claims nothing about overcast skies, and below the horizon it repeats the horizon's colour.
+summed in closed form. Three wavelengths shown as red, green and blue make deep twilight more purple than a spectrum
+would, because ozone takes more of 600 nm than of 680 nm. It claims nothing about overcast skies, and below the horizon it
+repeats the horizon's colour.
 """
 
 from __future__ import annotations
@@ -192,8 +194,8 @@ def visible_share(elevation: float) -> float:
 def sky_for(tables: Mapping[str, np.ndarray], elevation: float) -> SkyNow:
     """The light of one sun.
 
-    Radiance is interpolated geometrically, because at twilight it falls by a factor from one table entry to the next; the
-    irradiance of the sky is the integral of just that picture.
+    Radiance is interpolated geometrically, because at twilight it falls by a factor from one table entry to the next;
+    the irradiance of the sky is the integral of just that picture.
 
     Args:
         tables: from `bake_sky`.
