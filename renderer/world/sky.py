@@ -8,7 +8,7 @@ air is white, (1, 1, 1) times 1361 W m-2, and all colour comes from the air (as 
 
 Deviations: haze of one kind, a spherical Earth, no refraction, no polarisation; multiple scattering is isotropic and
 summed in closed form. Three wavelengths shown as red, green and blue make deep twilight more purple than a spectrum
-would, because ozone takes more of 600 nm than of 680 nm. It claims nothing about overcast skies, and below the horizon it
+would, because ozone takes more of 600 nm than of 680 nm. It claims nothing about overcast skies; below the horizon it
 repeats the horizon's colour.
 """
 
