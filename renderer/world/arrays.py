@@ -6,6 +6,7 @@ import zipfile
 import zlib
 from collections.abc import Collection
 from pathlib import Path
+from typing import IO
 
 import numpy as np
 from numpy.lib import format as npy
@@ -67,14 +68,14 @@ def read_npz(path: Path, wanted: Collection[str], max_bytes: int) -> dict[str, n
     return result
 
 
-def _read_array(stream: zipfile.ZipExtFile, name: str, max_bytes: int) -> np.ndarray:
+def _read_array(stream: IO[bytes], name: str, max_bytes: int) -> np.ndarray:
     """One array of the archive: its header first, then exactly the bytes that the header promises."""
     try:
-        version = npy.read_magic(stream)  # type: ignore[arg-type]
+        version = npy.read_magic(stream)
         readers = {(1, 0): npy.read_array_header_1_0, (2, 0): npy.read_array_header_2_0}
         if version not in readers:
             raise AssetError(name, f"is written in .npy version {version[0]}.{version[1]}", "version 1.0 or 2.0")
-        shape, fortran, dtype = readers[version](stream, max_header_size=MAX_HEADER)  # type: ignore[call-arg]
+        shape, fortran, dtype = readers[version](stream, max_header_size=MAX_HEADER)
     except (ValueError, SyntaxError, TypeError, RecursionError, MemoryError) as failure:
         raise AssetError(name, "has a damaged array header") from failure
     if dtype.hasobject or dtype.kind not in "biufU":

@@ -32,7 +32,14 @@ __all__ = [
     "normals",
 ]
 
-DEFAULT_CENTRE: tuple[float, float] = (0.0, 0.0)
+DEFAULT_CENTRE = (2656.0, -9312.0)
+"""Metres east and north of the default terrain's centre: the middle of the 4,096 m square of the default scene.
+
+Chosen by measurement among the squares 256 m apart, on 32 m cells: the best sum of standard scores of relief (1 to
+99 %), mean slope and share of the ground that other ground hides from a sun 12 degrees high (mean of 7 azimuths, east
+through south to west). It has 699 m, 18.6 degrees and 45 %; the median square has 364 m, 15.5 degrees and 34 %. Of the
+dozen squares that tie for the best, it has the most relief.
+"""
 
 MAX_CROP = 8192
 """Nodes along a side of the square that a scene may stand on."""
@@ -43,9 +50,10 @@ def default_terrain() -> Terrain:
     """The real elevation model that ships in matplotlib's wheel: the Jacksboro fault, Tennessee and Kentucky.
 
     344 x 403 nodes, 236 to 1,076 m. Its cells are 1/1200 degree; metres follow matplotlib's own example (111,200 m a
-    degree, longitude by the cosine of the latitude stored as `ymin`), as `dx = 74.266 m`, `dy = 92.667 m`.
+    degree, longitude by the cosine of the latitude stored as `ymin`), as `dx = 74.266 m`, `dy = 92.667 m`: 0.5 % off
+    the ellipsoid, kept so that measurements on this model can be compared with those of others.
     """
-    with cbook.get_sample_data("jacksboro_fault_dem.npz") as data:
+    with np.load(cbook.get_sample_data("jacksboro_fault_dem.npz", asfileobj=False), allow_pickle=False) as data:
         elevation = data["elevation"].astype(np.float32)
         step = (float(data["dx"]), float(data["dy"]))
         west, north = float(data["xmin"]), float(data["ymin"])
@@ -77,8 +85,9 @@ def load_terrain(path: Path, limits: Limits = DEFAULT_LIMITS, reading: TerrainRe
 def crop(terrain: Terrain, centre: tuple[float, float], side: float, cell: float) -> Terrain:
     """A square of the terrain, resampled bicubically to square cells.
 
-    Cubic B-splines through the nodes; where the new cells are coarser than the old ones, the old nodes are first smoothed
-    by a Gaussian of half the excess, so that no ridge between two new nodes aliases. Outside the terrain its edge continues.
+    Cubic B-splines through the nodes; where the new cells are coarser than the old ones, the old nodes are first
+    smoothed by a Gaussian of half the excess, so that no ridge between two new nodes aliases. Outside the terrain its
+    edge continues.
 
     Args:
         terrain: the whole model.
@@ -90,6 +99,9 @@ def crop(terrain: Terrain, centre: tuple[float, float], side: float, cell: float
         AssetError: the centre lies outside the terrain, or the square has fewer than 2 nodes a side.
         LimitError: more than 8192 nodes a side.
     """
+    for name, value in (("cell_size", cell), ("side", side)):
+        if not (math.isfinite(value) and value > 0):
+            raise AssetError(name, f"of the square is {value:g} m", "more than 0 m")
     count = round(side / cell)
     if count < 2:
         raise AssetError(
@@ -100,7 +112,7 @@ def crop(terrain: Terrain, centre: tuple[float, float], side: float, cell: float
             "cell_size", f"of {cell:g} m needs {count:,} nodes on a side of {side:g} m", f"at most {MAX_CROP:,}"
         )
     width, height = terrain.size
-    if abs(centre[0]) > width / 2 or abs(centre[1]) > height / 2:
+    if not (abs(centre[0]) <= width / 2 and abs(centre[1]) <= height / 2):
         raise AssetError(
             "centre",
             f"({centre[0]:g}, {centre[1]:g}) m lies outside the terrain",
@@ -151,7 +163,7 @@ def normals(elevation: np.ndarray, cell_size: tuple[float, float]) -> np.ndarray
 
 
 def _bilinear(grid: np.ndarray, cell_size: tuple[float, float], x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """Values of `grid` (rows, columns, ...) at points of the frame centred on it; outside, the edge's value continues."""
+    """Values of `grid` (rows, columns, ...) at points (metres) around its centre; outside, its edge continues."""
     rows, columns = grid.shape[:2]
     column = np.clip(np.asarray(x, dtype=np.float64) / cell_size[0] + (columns - 1) / 2, 0, columns - 1)
     row = np.clip((rows - 1) / 2 - np.asarray(y, dtype=np.float64) / cell_size[1], 0, rows - 1)

@@ -1,4 +1,4 @@
-"""Where on Earth a terrain is: just enough of coordinate systems to measure metres, place the sun and write the file back."""
+"""Where on Earth a terrain is: enough to measure metres, place the sun and write the file back."""
 
 from __future__ import annotations
 
@@ -67,8 +67,8 @@ def utm_zone(epsg: int | None) -> tuple[int, bool] | None:
 def place(crs: Crs, x: float, y: float) -> tuple[float, float] | None:
     """Latitude and longitude (degrees) of a point of `crs`, or None where the system is not known here.
 
-    Known: longitude and latitude themselves, UTM, and Web Mercator. Others need a projection library; the sun's place is
-    then the user's to say.
+    Known: longitude and latitude themselves, UTM, and Web Mercator. Others need a projection library; the sun's place
+    is then the user's to say.
     """
     if crs.geographic:
         return y, x
@@ -79,7 +79,10 @@ def place(crs: Crs, x: float, y: float) -> tuple[float, float] | None:
 
 
 def _from_utm(easting: float, northing: float, zone: int, south: bool) -> tuple[float, float]:
-    """Inverse transverse Mercator by Krueger's series to third order (Karney 2011, eqs. 35-36, 14): below 1 mm in a zone."""
+    """Inverse transverse Mercator, degrees: Krueger's series to third order, below 1 mm within a zone.
+
+    Source: Kawase 2011, "A general formula for calculating meridian arc length", as the UTM formulas in beta and delta.
+    """
     n = FLATTENING / (2 - FLATTENING)
     rectifying = SEMI_MAJOR / (1 + n) * (1 + n**2 / 4 + n**4 / 64)
     xi = (northing - (10_000_000.0 if south else 0.0)) / (0.9996 * rectifying)

@@ -1,9 +1,10 @@
-"""Terrain files: 16-bit PNG and .npz here, GeoTIFF in `terrain_geotiff`. The content decides the format, not the name."""
+"""Terrain files: 16-bit PNG and .npz here, GeoTIFF in `terrain_geotiff`. The content decides, not the name."""
 
 from __future__ import annotations
 
 import struct
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from PIL import Image
@@ -136,7 +137,7 @@ def _numbers(array: np.ndarray, name: str, counts: tuple[int, ...]) -> tuple[flo
 
 def save_npz(path: Path, terrain: Terrain) -> None:
     """Write a terrain as .npz: `elevation`, `cell_size`, and `latitude`, `longitude` of the centre where known."""
-    place = (
+    place: dict[str, Any] = (
         {}
         if terrain.latitude is None or terrain.longitude is None
         else {"latitude": np.float64(terrain.latitude), "longitude": np.float64(terrain.longitude)}

