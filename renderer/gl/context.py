@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import threading
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol, TypeVar
 
 import moderngl
+import numpy as np
 
 from renderer.core.errors import GLThreadError, GLUnavailable, UmbrageError
+from renderer.gl import textures
 from renderer.gl.program import ProgramCache
+from renderer.gl.textures import Filter, Wrap
 from renderer.gl.timing import GpuTimer
 
 OLDEST = (3, 3)
@@ -68,7 +71,8 @@ def create_context() -> moderngl.Context:
     failure: Exception | None = None
     for version in _WANTED:
         try:
-            return moderngl.create_context(standalone=True, backend="egl", require=version)
+            # moderngl's own stub takes each setting for a dictionary of settings.
+            return moderngl.create_context(version, standalone=True, backend="egl")  # type: ignore[arg-type]
         except Exception as error:  # glcontext raises bare exceptions
             failure = error
             if "not loaded" in str(error):
@@ -87,8 +91,8 @@ def describe(ctx: moderngl.Context) -> GLInfo:
 class GL:
     """What a job on the GL thread receives.
 
-    Every object made through `ctx` is counted until its `release()`, whoever made it. An owner that lives as long as the
-    context registers itself with `at_close`.
+    Every object made through `ctx` is counted until its `release()`, whoever made it. An owner that lives as long
+    as the context registers itself with `at_close`.
     """
 
     def __init__(self, ctx: moderngl.Context) -> None:
@@ -97,6 +101,7 @@ class GL:
         self._live: dict[int, Any] = {}
         self._owners: list[Releasable] = []
         self.left = 0
+        self._nowhere = ctx.detect_framebuffer(0)
         for name in _CREATORS:
             if hasattr(ctx, name):
                 setattr(ctx, name, self._counting(getattr(ctx, name)))
@@ -123,6 +128,22 @@ class GL:
             self._timer = GpuTimer(self.ctx, self.info.software)
         return self._timer
 
+    def texture2d(self, data: np.ndarray, filter: Filter = "linear", wrap: Wrap = "clamp",  # noqa: A002
+                  mips: Sequence[np.ndarray] = ()) -> moderngl.Texture:
+        """A 2D texture from an array: see `textures.texture2d`."""
+        return textures.texture2d(self.ctx, data, filter, wrap, mips)
+
+    def texture3d(self, data: np.ndarray, filter: Filter = "linear",  # noqa: A002
+                  wrap: tuple[Wrap, Wrap, Wrap] = ("clamp", "clamp", "clamp"),
+                  mips: Sequence[np.ndarray] = ()) -> moderngl.Texture3D:
+        """A 3D texture from an array: see `textures.texture3d`."""
+        return textures.texture3d(self.ctx, data, filter, wrap, mips)
+
+    def texture_array(self, data: np.ndarray, filter: Filter = "linear",  # noqa: A002
+                      wrap: Wrap = "clamp") -> moderngl.TextureArray:
+        """An array of 2D textures: see `textures.texture_array`."""
+        return textures.texture_array(self.ctx, data, filter, wrap)
+
     def own(self, made: Object) -> Object:
         """Count an object that has `release()` and was not made through `ctx`; returns it."""
         self._live[id(made)] = made
@@ -148,14 +169,16 @@ class GL:
             GLUnavailable: it has less than `what` requires.
         """
         if self.info.version < version:
+            has = self.info.version
             raise GLUnavailable(f"{what} requires OpenGL {version[0]}.{version[1]}; "
-                                f"this machine has {self.info.version[0]}.{self.info.version[1]} ({self.info.renderer})")
+                                f"this machine has {has[0]}.{has[1]} ({self.info.renderer})")
 
     def reset(self) -> None:
         """Put the pipeline's switches where every job finds them: all off, ordinary blending, nothing half bound."""
+        self._nowhere.use()
         self._ctx.enable_only(moderngl.NOTHING)
         self._ctx.blend_func = moderngl.SRC_ALPHA, moderngl.ONE_MINUS_SRC_ALPHA
-        self._ctx.blend_equation = moderngl.FUNC_ADD
+        self._ctx.blend_equation = moderngl.FUNC_ADD  # type: ignore[assignment]
         self._ctx.depth_func = "<"
         self._ctx.front_face = "ccw"
         self._ctx.cull_face = "back"
@@ -197,8 +220,21 @@ class GL:
 
     def _counting(self, create: Callable[..., Any]) -> Callable[..., Any]:
         def counted(*args: Any, **kwargs: Any) -> Any:
-            return self.own(create(*args, **kwargs))
+            made = self.own(create(*args, **kwargs))
+            if isinstance(made, moderngl.Framebuffer):
+                self._unbind_before_release(made)
+            return made
         return counted
+
+    def _unbind_before_release(self, framebuffer: moderngl.Framebuffer) -> None:
+        """moderngl binds the last used framebuffer again after making one, which fails once that one was released."""
+        release = framebuffer.release
+
+        def unbound() -> None:
+            if self._ctx.fbo is framebuffer:
+                self._nowhere.use()
+            release()
+        framebuffer.release = unbound  # type: ignore[method-assign]
 
 
 def _alive(made: Any) -> bool:

@@ -19,7 +19,7 @@ AnyTexture = moderngl.Texture | moderngl.Texture3D | moderngl.TextureArray | mod
 _STAGE = re.compile(r"^(\w+)\n=+$", re.MULTILINE)
 _MESSAGES = (
     re.compile(r"^\s*\d+:(?P<line>\d+)\(\d+\):\s*error:\s*(?P<words>.*)$"),          # Mesa: 0:12(3): error: words
-    re.compile(r"^\s*\d+\((?P<line>\d+)\)\s*:\s*error\s*(?P<words>.*)$"),            # NVIDIA: 0(12) : error C1008: words
+    re.compile(r"^\s*\d+\((?P<line>\d+)\)\s*:\s*error\s*(?P<words>.*)$"),            # NVIDIA: 0(12) : error C1: words
     re.compile(r"^\s*ERROR:\s*\d+:(?P<line>\d+):\s*(?P<words>.*)$", re.IGNORECASE),  # Khronos's compiler, AMD, Apple
 )
 _DECLARED = re.compile(r"\buniform\s+(?:(?:highp|mediump|lowp)\s+)?\w+\s+([^;]+);")
@@ -36,8 +36,8 @@ _GL_TYPES = {0x1406: _FLOAT, 0x8B50: _FLOAT, 0x8B51: _FLOAT, 0x8B52: _FLOAT,    
 class ProgramCache:
     """Programs by the text of their stages, with the vertex-less array that draws a full screen with each.
 
-    At most `limit` programs are kept; the one longest unasked for is released first. Whoever draws asks `get` again each
-    frame (a dictionary look-up) instead of holding a program.
+    At most `limit` programs are kept; the one longest unasked for is released first. Whoever draws asks `get` again
+    each frame (a dictionary look-up) instead of holding a program.
     """
 
     def __init__(self, ctx: moderngl.Context, limit: int = 128) -> None:
@@ -135,13 +135,21 @@ def set_uniforms(program: moderngl.Program, values: Mapping[str, Any]) -> None:
     for name, value in values.items():
         member = program.get(name, None)
         if isinstance(member, moderngl.Uniform):
-            data = np.asarray(value, dtype=_GL_TYPES.get(cast(int, cast(Any, member).gl_type), _INT))
-            expected = member.dimension * member.array_length
-            if data.size != expected:
-                raise UmbrageError(f"uniform {name} takes {expected} numbers, not {data.size}")
-            if cast(Any, member).matrix:
-                data = np.swapaxes(data, -1, -2)  # OpenGL stores columns
-            member.write(np.ascontiguousarray(data).tobytes())
+            member.write(_uniform_bytes(name, member, value))
+
+
+def _uniform_bytes(name: str, member: moderngl.Uniform, value: Any) -> bytes:
+    facts = cast(Any, member)  # moderngl's stubs leave these out
+    data = np.asarray(value, dtype=_GL_TYPES.get(facts.gl_type, _INT))
+    rank = 2 if facts.matrix else int(member.dimension > 1)
+    if data.ndim == rank + 1 and len(data) >= member.array_length:
+        data = data[:member.array_length]  # compilers cut an array after the last element that is used
+    expected = member.dimension * member.array_length
+    if data.size != expected:
+        raise UmbrageError(f"uniform {name} takes {expected} numbers, not {data.size}")
+    if facts.matrix:
+        data = np.swapaxes(data, -1, -2)  # OpenGL stores columns
+    return np.ascontiguousarray(data).tobytes()
 
 
 def bind_textures(program: moderngl.Program, textures: Mapping[str, AnyTexture], first_unit: int = 0) -> int:
@@ -157,8 +165,8 @@ def bind_textures(program: moderngl.Program, textures: Mapping[str, AnyTexture],
     for name, texture in textures.items():
         member = program.get(name, None)
         if isinstance(member, moderngl.Uniform):
-            if unit >= program.ctx.max_texture_units:
-                raise UmbrageError(f"no texture unit is left for {name}: this machine has {program.ctx.max_texture_units}")
+            if unit == program.ctx.default_texture_unit:  # the last one, on which moderngl uploads
+                raise UmbrageError(f"no texture unit is left for {name}: this machine has {unit}")
             texture.use(unit)
             member.value = unit
             unit += 1

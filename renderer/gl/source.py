@@ -1,8 +1,8 @@
 """GLSL text composed of files, with the true file and line of every line kept.
 
 A `.glsl` file holds pure functions: no `main`, no `#version`, no `uniform`. Those are generated, or belong to the entry
-shaders of `shaders/stages` (`.vert`, `.frag`). Drivers number lines in the text they are given, and Mesa ignores the file
-number of `#line` directives, so the origin of each line is recorded here instead.
+shaders of `shaders/stages` (`.vert`, `.frag`). Drivers number lines in the text they are given, and Mesa ignores the
+file number of `#line` directives, so the origin of each line is recorded here instead.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ class Source:
     origin: tuple[tuple[str, int], ...]
 
     def locate(self, line: int) -> tuple[str, int]:
-        """File and line behind line `line` of the text, counted from 1 as compilers do; beyond either end, the nearest."""
+        """File and line behind line `line` of the text, counted from 1 as compilers do; beyond an end, the last."""
         return self.origin[min(max(line, 1), len(self.origin)) - 1]
 
 

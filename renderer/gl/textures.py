@@ -107,7 +107,7 @@ def _levels(data: np.ndarray, mips: Sequence[np.ndarray], dimensions: int) -> li
         if shaped.ndim != dimensions + 1 or not 1 <= shaped.shape[-1] <= 4 or 0 in shaped.shape:
             raise UmbrageError(f"a {dimensions}D texture is not made from an array of shape {level.shape}")
         if level.dtype != data.dtype or shaped.shape[:dimensions] != wanted:
-            raise UmbrageError(f"mip level {number} is {level.dtype.name} {level.shape}, not {data.dtype.name} {wanted}")
+            raise UmbrageError(f"mip level {number} is {level.dtype} {level.shape}, not {data.dtype} {wanted}")
         levels.append(np.ascontiguousarray(shaped))
     return levels
 
@@ -128,16 +128,16 @@ def _check_size(ctx: moderngl.Context, limit: str, *sides: int) -> None:
 def _write_level(ctx: moderngl.Context, texture: moderngl.Texture3D, number: int, level: np.ndarray) -> None:
     """Upload one mip level of a 3D texture, for which moderngl has no call."""
     layers, rows, columns, components = level.shape
-    unit = ctx.max_texture_units - 1  # the one that moderngl itself binds for uploads
+    unit = ctx.default_texture_unit  # the one that moderngl itself binds for uploads
     pixels = level.ctypes.data_as(ctypes.c_void_p)
     _gl(ctx, "glActiveTexture", ctypes.c_uint)(_TEXTURE0 + unit)
     _gl(ctx, "glBindTexture", ctypes.c_uint, ctypes.c_uint)(_TEXTURE_3D, texture.glo)
     _gl(ctx, "glPixelStorei", ctypes.c_uint, ctypes.c_int)(_UNPACK_ALIGNMENT, 1)
-    upload = _gl(ctx, "glTexSubImage3D", ctypes.c_uint, *(ctypes.c_int,) * 7, ctypes.c_uint, ctypes.c_uint, ctypes.c_void_p)
+    upload = _gl(ctx, "glTexSubImage3D", ctypes.c_uint, *(ctypes.c_int,) * 7, *(ctypes.c_uint,) * 2, ctypes.c_void_p)
     upload(_TEXTURE_3D, number, 0, 0, 0, columns, rows, layers, _FORMATS[components], _TYPES[texture.dtype], pixels)
 
 
 def _gl(ctx: moderngl.Context, name: str, *arguments: Any) -> Any:
     """An OpenGL function of the current context by name."""
-    address = ctx.mglo._context.load_opengl_function(name)  # type: ignore[attr-defined]
+    address = ctx.mglo._context.load_opengl_function(name)
     return ctypes.CFUNCTYPE(None, *arguments)(address)

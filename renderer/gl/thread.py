@@ -29,9 +29,9 @@ class _Job:
 class GLThread:
     """Creates and owns the context, runs jobs one at a time in the order in which their places were taken.
 
-    A submitted job takes a place of its own. A mailbox has one place: a newer job posted to it before it starts replaces
-    the older one and keeps its place, so that no mailbox and no submitted job waits for more than one job of each other
-    mailbox. A job that needs another's result waits for that one's future before it is posted.
+    A submitted job takes a place of its own. A mailbox has one place: a newer job posted to it before it starts
+    replaces the older one and keeps its place, so that mailboxes take turns and a waiting job waits for at most one of each.
+    A job that needs another's result is posted when that one's future is done.
 
     Raises:
         GLUnavailable: this machine has no usable OpenGL.

@@ -14,8 +14,8 @@ from renderer.core.errors import UmbrageError
 class GpuTimer:
     """Measures GPU work between entering and leaving `measure()`.
 
-    On hardware it is OpenGL's own elapsed-time query. A software rasteriser answers such a query when commands are queued
-    rather than when they have run, so there the clock is read with the queue drained on both sides.
+    On hardware it is OpenGL's own elapsed-time query. A software rasteriser answers such a query when commands are
+    queued rather than when they have run, so there the clock is read with the queue drained on both sides.
     """
 
     def __init__(self, ctx: moderngl.Context, software: bool) -> None:

@@ -1,8 +1,8 @@
-// A texture's texels as they are, times a factor: what the accumulator adds, and how it divides.
+// A texture's texels as they are, or divided: what the accumulator adds, and how it takes the mean.
 uniform sampler2D source;
-uniform float factor;
+uniform float divisor;
 layout(location = 0) out vec4 copied;
 
 void main() {
-    copied = texelFetch(source, ivec2(gl_FragCoord.xy), 0) * factor;
+    copied = texelFetch(source, ivec2(gl_FragCoord.xy), 0) / divisor;
 }
