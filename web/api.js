@@ -1,0 +1,73 @@
+// The REST doors the page uses; every refusal becomes an error whose message is a sentence.
+
+/** What the server said no to: `errors` are `{field, message, allowed}`. */
+export class Refused extends Error {
+  constructor(errors) {
+    super(errors.map(sentence).join(" "));
+    this.errors = errors;
+  }
+}
+
+/** One refusal in words. */
+export function sentence({ field, message, allowed }) {
+  const start = [field, message].filter(Boolean).join(": ");
+  return `${start}${allowed ? ` (allowed: ${allowed})` : ""}.`.replace(/\.\.$/, ".");
+}
+
+async function refusal(answer) {
+  const body = await answer.json().catch(() => null);
+  const detail = body?.errors ?? body?.detail ?? body;
+  const list = Array.isArray(detail) ? detail : [detail?.message ? detail : { field: "", message: `The server answered ${answer.status}`, allowed: "" }];
+  return new Refused(list.map((item) => ({ field: item.field ?? (item.loc ?? []).join("."), message: item.message ?? item.msg ?? "", allowed: item.allowed ?? "" })));
+}
+
+async function request(path, options = {}) {
+  let answer;
+  try {
+    answer = await fetch(path + location.search, options);
+  } catch {
+    throw new Refused([{ field: "", message: "The server cannot be reached", allowed: "" }]);
+  }
+  if (!answer.ok) throw await refusal(answer);
+  return answer;
+}
+
+const asJson = (body) => ({ method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify(body) });
+
+export const scenes = async () => (await request("api/scenes")).json();
+export const scene = async (name) => (await request(`api/scenes/${encodeURIComponent(name)}`)).json();
+export const measureSun = async (place) => (await request("api/measure/sun", asJson(place))).json();
+
+/** A finished picture as a blob of `type`. */
+export async function render(state, width, height, type = "image/png") {
+  const options = asJson({ scene: state.scene, state, width, height });
+  options.headers.Accept = type;
+  return (await request("api/render", options)).blob();
+}
+
+/** Upload a file; resolves to what the server found in it. */
+export async function upload(file) {
+  const body = new FormData();
+  body.append("file", file, file.name);
+  return (await request("api/assets", { method: "POST", body })).json();
+}
+
+const POLL_MS = 400;
+
+/** Start long work and follow it; `signal` aborts both. Resolves to the job's result. */
+export async function job(body, onProgress, signal) {
+  const { id } = await (await request("api/jobs", asJson(body))).json();
+  for (;;) {
+    await new Promise((resolve) => setTimeout(resolve, POLL_MS));
+    if (signal.aborted) {
+      await request(`api/jobs/${id}`, { method: "DELETE" });
+      throw new DOMException("Cancelled", "AbortError");
+    }
+    const state = await (await request(`api/jobs/${id}`)).json();
+    if (state.result) return state.result;
+    if (["failed", "cancelled", "error"].includes(state.status)) {
+      throw new Refused([{ field: state.error?.field ?? "", message: state.error?.message ?? state.words ?? "The work failed", allowed: "" }]);
+    }
+    onProgress(state);
+  }
+}

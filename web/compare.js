@@ -1,0 +1,179 @@
+// A beside B: another technique or the reference, by split, blink, difference or error map, with the numbers.
+
+import * as api from "./api.js";
+import { el, freshId } from "./dom.js";
+import { Progress } from "./notices.js";
+
+const BLINK_MS = 700;
+const MODES = [["split", "Split"], ["blink", "Blink"], ["difference", "Difference"], ["error", "Error map"]];
+const NUMBERS = [
+  ["relative_rmse", "Relative RMSE", (v) => `${(100 * v).toFixed(2)} %`], ["flip_mean", "FLIP, mean", (v) => v.toFixed(4)],
+  ["flip_p95", "FLIP, 95th percentile", (v) => v.toFixed(4)], ["standard_error", "Reference's own error", (v) => v.toExponential(1)],
+  ["seconds", "Reference took", (v) => `${v.toFixed(1)} s`],
+];
+const REFERENCE_SIDE = 256;
+
+/** The left panel and the split on the picture. */
+export class Compare {
+  constructor(root, screen, store, link, notices) {
+    Object.assign(this, { root, screen, store, link, notices });
+    this.mode = "split";
+    this.at = 0.5;
+    this.handle = el("div", { class: "split", role: "slider", tabindex: 0, "aria-label": "Split between A and B", "aria-valuemin": 0,
+      "aria-valuemax": 100, hidden: true, on: { pointerdown: (event) => this.drag(event), keydown: (event) => this.key(event) } });
+    this.tagA = el("span", { class: "glass tag tag-a", hidden: true });
+    this.tagB = el("span", { class: "glass tag tag-b", hidden: true });
+    screen.root.append(this.handle, this.tagA, this.tagB);
+    store.addEventListener("scene", () => this.build());
+    store.addEventListener("change", () => this.staleReference());
+    link.addEventListener("open", () => this.patch && this.link.send({ type: "compare", patch: this.patch }));
+  }
+
+  build() {
+    const slots = this.store.scene.slots;
+    const name = freshId("mode");
+    this.slot = el("select", { class: "select", id: freshId("slot"), on: { change: () => this.fillKinds() } }, slots.map((slot) => el("option", { value: slot.name, text: slot.title })));
+    this.kind = el("select", { class: "select", id: freshId("kind"), on: { change: () => this.technique() } });
+    this.radios = MODES.map(([value, text]) => {
+      const radio = el("input", { type: "radio", name, value, on: { change: () => this.show(value) } });
+      return [radio, el("label", { class: "segment" }, radio, el("span", { text }))];
+    });
+    this.progress = new Progress(() => this.abort?.abort());
+    this.progress.root.hidden = true;
+    this.numbers = el("dl", { class: "costs" });
+    this.gain = el("input", { type: "range", min: 1, max: 16, step: 1, value: 4, class: "slider", "aria-label": "Gain of the difference",
+      on: { input: () => this.screen.root.style.setProperty("--gain", this.gain.value) } });
+    this.gainRow = el("div", { class: "control", hidden: true }, el("div", { class: "control-head" }, el("span", { class: "label", text: "Gain" })), this.gain);
+    this.root.querySelector(".panel-body").replaceChildren(
+      el("div", { class: "control" }, el("label", { class: "label", for: this.slot.id, text: "B differs in" }), this.slot),
+      el("div", { class: "control" }, el("label", { class: "label", for: this.kind.id, text: "B uses" }), this.kind),
+      el("button", { type: "button", class: "wide", text: "Compare with the reference", on: { click: () => this.reference() } }),
+      this.progress.root,
+      el("div", { class: "segments", role: "radiogroup", "aria-label": "How to compare" }, this.radios.map(([, label]) => label)),
+      this.gainRow, this.numbers,
+      el("button", { type: "button", class: "quiet", text: "Stop comparing", on: { click: () => this.stop() } }));
+    this.fillKinds(false);
+    this.update();
+  }
+
+  fillKinds(start = true) {
+    const slot = this.store.scene.slots.find((item) => item.name === this.slot.value);
+    const here = this.store.document[slot.name]?.kind;
+    const options = slot.techniques.filter((item) => item.available);
+    this.kind.replaceChildren(...options.map((item) => el("option", { value: item.kind, text: item.title })));
+    this.kind.value = (options.find((item) => item.kind !== here) ?? options[0])?.kind ?? "";
+    if (start) this.technique();
+  }
+
+  title(slotName, kind) {
+    const slot = this.store.scene.slots.find((item) => item.name === slotName);
+    return slot?.techniques.find((item) => item.kind === kind)?.title ?? kind;
+  }
+
+  /** B is the same scene with another technique, streamed beside A. */
+  technique() {
+    const slot = this.slot.value;
+    const node = this.store.schema.members(this.store.schema.at(slot, this.store.document)).get(this.kind.value);
+    this.patch = { [slot]: this.store.schema.fresh(node) };
+    this.errorMap = null;
+    this.numbers.replaceChildren();
+    this.link.send({ type: "compare", patch: this.patch });
+    this.labels(this.title(slot, this.store.document[slot]?.kind), this.title(slot, this.kind.value));
+    this.show(this.mode === "error" ? "split" : this.mode);
+  }
+
+  /** B is the slow truth, computed once for the state as it is now. */
+  async reference() {
+    this.abort?.abort();
+    const abort = this.abort = new AbortController();
+    const state = this.store.document;
+    const scale = Math.min(1, REFERENCE_SIDE / Math.max(this.screen.width, this.screen.height));
+    const size = { width: Math.round(this.screen.width * scale), height: Math.round(this.screen.height * scale) };
+    this.progress.root.hidden = false;
+    this.progress.show({ words: "Waiting for the reference", fraction: 0 });
+    try {
+      const result = await api.job({ kind: "reference", state, ...size }, (progress) => this.progress.show(progress), abort.signal);
+      if (state === this.store.document) await this.take(result);
+      else this.notices.toast("The picture changed while its reference was computed: compare again.");
+    } catch (error) {
+      if (error.name !== "AbortError") this.notices.toast(error.message, "refusal");
+    } finally {
+      if (this.abort === abort) this.progress.root.hidden = true;
+    }
+  }
+
+  async take(result) {
+    if (this.patch) this.link.send({ type: "compare", patch: null });
+    this.patch = null;
+    const image = async (url) => createImageBitmap(await (await fetch(url)).blob());
+    this.truth = await image(result.reference);
+    this.errorMap = await image(result.error_map);
+    this.numbers.replaceChildren(...NUMBERS.filter(([key]) => Number.isFinite(result[key]))
+      .flatMap(([key, title, write]) => [el("dt", { text: title }), el("dd", { text: write(result[key]) })]));
+    this.labels("Picture", "Reference");
+    this.show("split");
+  }
+
+  /** The reference belongs to one state; once that changes it is taken off rather than left to mislead. */
+  staleReference() {
+    if (this.truth) this.stop();
+  }
+
+  labels(a, b) {
+    this.tagA.textContent = a;
+    this.tagB.textContent = b;
+  }
+
+  show(mode) {
+    this.mode = mode;
+    this.active = Boolean(this.patch || this.truth);
+    if (this.truth) this.screen.still(mode === "error" ? this.errorMap : this.truth);
+    clearInterval(this.blinking);
+    const root = this.screen.root;
+    root.dataset.compare = this.active ? mode : "";
+    root.classList.remove("blink-b");
+    if (this.active && mode === "blink") this.blinking = setInterval(() => root.classList.toggle("blink-b"), BLINK_MS);
+    this.update();
+  }
+
+  update() {
+    for (const [radio] of this.radios ?? []) {
+      radio.checked = radio.value === this.mode;
+      radio.disabled = radio.value === "error" && !this.truth;
+    }
+    if (this.gainRow) this.gainRow.hidden = this.mode !== "difference";
+    this.handle.hidden = !(this.active && (this.mode === "split" || this.mode === "error"));
+    this.tagA.hidden = this.tagB.hidden = !this.active;
+    this.screen.root.style.setProperty("--split", this.at);
+    this.handle.setAttribute("aria-valuenow", Math.round(100 * this.at));
+  }
+
+  stop() {
+    if (this.patch) this.link.send({ type: "compare", patch: null });
+    this.abort?.abort();
+    this.patch = this.truth = this.errorMap = null;
+    this.numbers?.replaceChildren();
+    this.show("split");
+  }
+
+  drag(event) {
+    event.preventDefault();
+    this.handle.setPointerCapture(event.pointerId);
+    this.handle.focus({ preventScroll: true });
+    const move = (moved) => this.move(moved.clientX / this.screen.root.clientWidth);
+    this.handle.addEventListener("pointermove", move);
+    this.handle.addEventListener("lostpointercapture", () => this.handle.removeEventListener("pointermove", move), { once: true });
+  }
+
+  move(at) {
+    this.at = Math.min(1, Math.max(0, at));
+    this.update();
+  }
+
+  key(event) {
+    const step = { ArrowLeft: -0.02, ArrowRight: 0.02 }[event.key];
+    if (!step) return;
+    event.preventDefault();
+    this.move(this.at + step);
+  }
+}

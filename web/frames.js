@@ -1,0 +1,52 @@
+// Pictures as they arrive: header, decoding, order, acknowledgement, and what each one cost.
+
+const HEADER_BYTES = 4;
+const MIME = { jpeg: "image/jpeg", png: "image/png" };
+
+/** Header and image bytes of one binary message. */
+export function parse(buffer) {
+  const length = new DataView(buffer).getUint32(0, true);
+  const text = new TextDecoder().decode(new Uint8Array(buffer, HEADER_BYTES, length));
+  return { header: JSON.parse(text), image: new Uint8Array(buffer, HEADER_BYTES + length) };
+}
+
+/**
+ * Decodes and draws frames, oldest dropped when a newer one of the same stream was drawn already.
+ *
+ * A frame is acknowledged when it arrives, not when it is drawn: the server then renders the next one while this one
+ * is decoded, and still at most two are unacknowledged.
+ */
+export class Frames {
+  constructor(link, screen, stats) {
+    this.link = link;
+    this.screen = screen;
+    this.stats = stats;
+    this.latest = new Map();
+    link.addEventListener("frame", (event) => this.take(event.detail));
+    link.addEventListener("open", () => this.latest.clear());
+  }
+
+  async take(buffer) {
+    const arrived = performance.now();
+    const { header, image } = parse(buffer);
+    this.link.ack(header.sequence);
+    let bitmap;
+    try {
+      bitmap = await createImageBitmap(new Blob([image], { type: MIME[header.codec] }));
+    } catch {
+      this.stats.damaged += 1;
+      return;
+    }
+    const last = this.latest.get(header.stream) ?? -1;
+    if (header.sequence < last) {
+      bitmap.close();
+      return;
+    }
+    this.latest.set(header.stream, header.sequence);
+    this.screen.draw(header.stream, bitmap);
+    bitmap.close();
+    const drawn = performance.now();
+    const inputs = header.stream === 0 ? this.link.drawn(header.version) : [];
+    this.stats.record(header, buffer.byteLength, drawn - arrived, drawn, inputs);
+  }
+}

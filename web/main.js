@@ -1,0 +1,175 @@
+// Puts the page together; every module gets what it needs from here and knows no other by name.
+
+import * as api from "./api.js";
+import { Compare } from "./compare.js";
+import { el, iconButton, perFrame } from "./dom.js";
+import { Frames } from "./frames.js";
+import { Gallery } from "./gallery.js";
+import * as help from "./help.js";
+import { Notices } from "./notices.js";
+import { Overlay } from "./overlay.js";
+import { Panels, schemaOf } from "./panels.js";
+import { Pointer } from "./pointer.js";
+import { Probe } from "./probe.js";
+import { Screen } from "./screen.js";
+import { decode, Share } from "./share.js";
+import { Link } from "./socket.js";
+import { Stats } from "./stats.js";
+import { Store } from "./store.js";
+import * as theme from "./theme.js";
+import { SunBar } from "./timeline.js";
+import { Upload } from "./upload.js";
+
+const NARROW = "(max-width: 799px)";
+const find = (selector) => document.querySelector(selector);
+
+const store = new Store();
+const stats = new Stats();
+const screen = new Screen(find("#stage"));
+let opening = { state: null, scene: null, preset: null };
+const link = new Link(store, () => ({ width: screen.width, height: screen.height, ...opening, ...(store.document ? { state: store.document } : {}) }));
+const notices = new Notices(find("#notices"), link);
+const pointer = new Pointer(find("#surface"), store, link);
+const panels = new Panels(find("#controls"), find("#hint"), store, () => pointer.aspect);
+const sunBar = new SunBar(find("#sun"), store, link, () => panels.context());
+const compare = new Compare(find("#compare"), screen, store, link, notices);
+const gallery = new Gallery(find("#gallery"), find("#scene"), store, choose);
+const share = new Share(store, screen, notices);
+const dialog = find("#dialog");
+const upload = new Upload(dialog, store, notices);
+new Frames(link, screen, stats);
+new Overlay(find("#corner"), stats);
+new Probe(find("#probe"), pointer, link);
+
+/** Show a dialog whose body `fill` makes. */
+function show(title, fill) {
+  find("#dialog-title").textContent = title;
+  fill(dialog.querySelector(".dialog-body"), () => dialog.close());
+  dialog.showModal();
+}
+
+const tools = {
+  undo: iconButton("undo", "Undo", () => store.undo()),
+  redo: iconButton("redo", "Redo", () => store.redo()),
+  compare: iconButton("compare", "Compare", () => unfold("compare"), { "aria-expanded": "false", "aria-controls": "compare" }),
+  open: iconButton("open", "Open a file", () => upload.choose()),
+  share: iconButton("share", "Copy a link to this picture", () => share.copyLink()),
+  export: iconButton("export", "Export", () => show("Export", (root, close) => share.fillExport(root, close))),
+  code: iconButton("code", "As code", () => show("This picture as code", (root) => share.fillCode(root))),
+  theme: iconButton("theme", "Dark or light", () => notices.toast(theme.next())),
+  help: iconButton("help", "Help", () => show("What you can do", help.fill)),
+  panel: iconButton("panel", "Techniques and parameters", () => unfold("panel"), { "aria-expanded": "true", "aria-controls": "panel" }),
+};
+
+/** Open or close a side panel; on a phone the two sheets take turns. */
+function unfold(name, open = find(`#${name}`).hidden) {
+  find(`#${name}`).hidden = !open;
+  tools[name].setAttribute("aria-expanded", String(open));
+  document.body.classList.toggle("with-panel", !find("#panel").hidden);
+  const other = name === "panel" ? "compare" : "panel";
+  if (open && matchMedia(NARROW).matches) unfold(other, false);
+}
+
+/** A preset of a scene becomes the state; another scene brings its own controls. */
+async function choose(name, preset) {
+  try {
+    const scene = name === store.scene.name ? store.scene : await api.scene(name);
+    const wanted = structuredClone(scene.presets[preset]?.document ?? scene.defaults);
+    if (scene !== store.scene) {
+      store.schema = schemaOf(scene);
+      store.replace(wanted);
+      store.describe(scene);
+    } else store.replace(wanted);
+  } catch (error) {
+    notices.toast(error.message, "refusal");
+  }
+}
+
+async function opened({ detail: welcome }) {
+  const { limits = {}, gl = {} } = welcome;
+  screen.grey(false);
+  notices.connection(null);
+  if (!store.scene || store.scene.name !== welcome.scene) {
+    const scene = await api.scene(welcome.scene);
+    store.schema = schemaOf(scene);
+    store.adopt(welcome.state);
+    store.describe(scene);
+    store.announce("scene");
+  } else if (!link.pending) store.adopt(welcome.state);
+  screen.limit(limits.max_side ?? Infinity, limits.max_side ?? Infinity, gl.software);
+  link.pump();
+}
+
+function message({ detail }) {
+  if (detail.type === "progress") notices.working(detail);
+  else if (detail.type === "ready") notices.working(null);
+  else if (detail.type === "idle") stats.idle = true;
+  else if (detail.type === "error") refused(detail);
+}
+
+/** A refusal is told at the control that caused it; where none shows it, in a line of its own. */
+function refused(error) {
+  notices.working(null);
+  if (!store.document && opening.state) {
+    opening = { ...opening, state: null };
+    notices.toast("The link's state was refused, so the scene starts at its defaults.", "refusal");
+  }
+  const { field, ...rest } = error;
+  if (!field || !panels.fail(field, api.sentence({ ...rest, field: "" }))) notices.refuse(error);
+}
+
+const refresh = perFrame(() => {
+  if (!store.document || !store.scene) return;
+  panels.refresh();
+  sunBar.refresh();
+  tools.undo.disabled = !store.past.length;
+  tools.redo.disabled = !store.future.length;
+});
+
+const KEYS = { KeyH: () => document.body.classList.toggle("bare"), Slash: () => tools.help.click() };
+
+addEventListener("keydown", (event) => {
+  const command = event.ctrlKey || event.metaKey;
+  const typing = /^(INPUT|SELECT|TEXTAREA)$/.test(event.target.tagName) && !["range", "radio", "checkbox"].includes(event.target.type);
+  if (typing || dialog.open) return;
+  if (command && event.code === "KeyZ") {
+    event.preventDefault();
+    if (event.shiftKey) store.redo();
+    else store.undo();
+  } else if (!command && !event.altKey) KEYS[event.code]?.();
+});
+
+function assemble() {
+  const rule = () => el("hr", { "aria-hidden": "true" });
+  find("#tools").append(tools.undo, tools.redo, rule(), tools.compare, tools.open, rule(), tools.share, tools.export, tools.code, rule(), tools.theme, tools.help, tools.panel);
+  const close = (name) => iconButton("close", "Close", () => { unfold(name, false); tools[name].focus(); });
+  for (const name of ["panel", "compare"]) find(`#${name} .panel-head`).append(close(name));
+  dialog.querySelector(".panel-head").append(iconButton("close", "Close", () => dialog.close()));
+  dialog.addEventListener("click", (event) => event.target === dialog && dialog.close());
+  find("#time-zones").append(...(Intl.supportedValuesOf?.("timeZone") ?? []).map((value) => el("option", { value })));
+  unfold("panel", !matchMedia(NARROW).matches);
+  tools.undo.disabled = tools.redo.disabled = true;
+}
+
+async function start() {
+  theme.start();
+  assemble();
+  store.addEventListener("change", refresh);
+  screen.addEventListener("size", () => link.send({ type: "resize", width: screen.width, height: screen.height }));
+  link.addEventListener("open", (event) => opened(event).catch((error) => notices.toast(error.message, "refusal")));
+  link.addEventListener("message", message);
+  link.addEventListener("lost", ({ detail }) => {
+    screen.grey(true);
+    notices.working(null);
+    notices.connection(detail.reason || "The connection is lost. Your view is kept; trying again.", true);
+  });
+  addEventListener("online", () => link.retry());
+  notices.connection("Connecting to the server …");
+  const query = new URLSearchParams(location.search);
+  opening = { state: await decode(location.hash).catch(() => null), scene: query.get("scene"), preset: query.get("preset") };
+  link.connect();
+  gallery.load().catch(() => null);
+}
+
+window.umbrage = { stats, store, link, screen, compare, encode: () => share.link() };
+start();

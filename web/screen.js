@@ -1,0 +1,61 @@
+// The two canvases that fill the window (A, and B for comparison) and the size asked of the server.
+
+const SOFTWARE_WIDTH = 1280;
+
+/** Draws bitmaps; stream 0 on A, stream 1 on B. `size` events tell when another size should be asked for. */
+export class Screen extends EventTarget {
+  constructor(root) {
+    super();
+    this.root = root;
+    this.canvases = [root.querySelector("#picture"), root.querySelector("#picture-b")];
+    this.contexts = this.canvases.map((canvas) => canvas.getContext("2d", { alpha: false }));
+    this.limits = { width: SOFTWARE_WIDTH, height: SOFTWARE_WIDTH };
+    this.width = 0;
+    this.height = 0;
+    this.measure();
+    new ResizeObserver(() => this.measure()).observe(root);
+  }
+
+  /** Largest picture, in device pixels; `software` renderers are spared more than they can draw. */
+  limit(width, height, software) {
+    this.limits = { width: Math.min(width, software ? SOFTWARE_WIDTH : width), height };
+    this.measure();
+  }
+
+  measure() {
+    const box = this.root.getBoundingClientRect();
+    const ratio = window.devicePixelRatio || 1;
+    const scale = Math.min(ratio, this.limits.width / Math.max(1, box.width), this.limits.height / Math.max(1, box.height));
+    const width = Math.max(16, Math.round(box.width * scale));
+    const height = Math.max(16, Math.round(box.height * scale));
+    if (width === this.width && height === this.height) return;
+    this.width = width;
+    this.height = height;
+    this.dispatchEvent(new Event("size"));
+  }
+
+  draw(stream, bitmap) {
+    const canvas = this.canvases[stream];
+    const context = this.contexts[stream];
+    if (canvas.width !== this.width || canvas.height !== this.height) {
+      canvas.width = this.width;
+      canvas.height = this.height;
+      context.imageSmoothingQuality = "medium";
+    }
+    context.drawImage(bitmap, 0, 0, this.width, this.height);
+    if (stream === 0 && !this.drawnOnce) {
+      this.drawnOnce = true;
+      this.root.dataset.drawn = "yes";
+    }
+  }
+
+  /** Draw an image that is no frame, as a reference picture, on B. */
+  still(image) {
+    this.draw(1, image);
+  }
+
+  /** Grey the picture while the connection is away. */
+  grey(on) {
+    this.root.classList.toggle("away", on);
+  }
+}

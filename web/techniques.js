@@ -1,0 +1,54 @@
+// Technique pickers: one card per published method of a slot, then the chosen one's parameters.
+
+import { el, freshId, icon } from "./dom.js";
+import { UnionPart } from "./form.js";
+import { valueAt } from "./document.js";
+
+/** The picker of one slot. */
+export class SlotPicker {
+  constructor(context, slot, node) {
+    Object.assign(this, { context, slot });
+    this.union = new UnionPart(context, slot.name, node, { picker: false });
+    this.name = freshId("slot");
+    this.list = freshId("techniques");
+    this.title = el("span", { class: "slot-technique" });
+    this.caption = el("span", { class: "slot-caption" });
+    this.paper = el("span", { class: "slot-paper" });
+    this.button = el("button", { type: "button", class: "slot-button", "aria-expanded": "false", "aria-controls": this.list,
+      on: { click: () => this.unfold(this.cards.hidden) } },
+    el("span", { class: "slot-name", text: slot.title }), this.title, this.caption, this.paper, icon("down"));
+    this.radios = new Map();
+    this.cards = el("div", { id: this.list, class: "cards", role: "radiogroup", "aria-label": slot.title, hidden: true },
+      slot.techniques.map((technique) => this.card(technique)));
+    this.root = el("section", { class: "slot", data: { slot: slot.name } }, this.button, this.cards, this.union.root);
+    this.button.addEventListener("pointerenter", () => context.hint?.({ title: slot.title, description: slot.help }, slot.name));
+  }
+
+  card(technique) {
+    const note = technique.available ? technique.caption : technique.why_not;
+    const radio = el("input", { type: "radio", name: this.name, value: technique.kind, disabled: !technique.available,
+      on: { change: () => this.union.choose(technique.kind) } });
+    this.radios.set(technique.kind, radio);
+    const standard = technique.kind === this.slot.default ? el("span", { class: "badge", text: "default" }) : null;
+    return el("label", { class: "card" }, radio,
+      el("span", { class: "card-title" }, technique.title, standard),
+      el("span", { class: "card-caption", text: note }),
+      el("span", { class: "card-paper", text: technique.paper }));
+  }
+
+  unfold(open) {
+    this.cards.hidden = !open;
+    this.button.setAttribute("aria-expanded", String(open));
+    if (open) this.radios.get(this.kind)?.focus({ preventScroll: true });
+  }
+
+  refresh(document) {
+    this.kind = valueAt(document, this.slot.name)?.kind;
+    const technique = this.slot.techniques.find((item) => item.kind === this.kind);
+    this.title.textContent = technique?.title ?? this.kind;
+    this.caption.textContent = technique?.caption ?? "";
+    this.paper.textContent = technique?.paper ?? "";
+    for (const [kind, radio] of this.radios) radio.checked = kind === this.kind;
+    this.union.refresh(document);
+  }
+}
