@@ -1,4 +1,7 @@
-"""Named errors. Every door turns them into a sentence; none reaches a user as a stack trace."""
+"""Named errors. Every door turns them into a sentence; none reaches a user as a stack trace.
+
+Each passes its arguments to `Exception` as they are, so that it survives the way back from a worker process.
+"""
 
 from __future__ import annotations
 
@@ -20,7 +23,11 @@ class InputError(UmbrageError):
         self.field = field
         self.message = message
         self.allowed = allowed
-        super().__init__(": ".join(part for part in (field, message) if part) + (f" (allowed: {allowed})" if allowed else ""))
+        super().__init__(field, message, allowed)
+
+    def __str__(self) -> str:
+        sentence = ": ".join(part for part in (self.field, self.message) if part)
+        return f"{sentence} (allowed: {self.allowed})" if self.allowed else sentence
 
     def as_dict(self) -> dict[str, str]:
         """The error as the doors send it."""
@@ -32,7 +39,10 @@ class InvalidDocument(UmbrageError):
 
     def __init__(self, errors: list[InputError]) -> None:
         self.errors = errors
-        super().__init__("; ".join(str(error) for error in errors))
+        super().__init__(errors)
+
+    def __str__(self) -> str:
+        return "; ".join(str(error) for error in self.errors)
 
 
 class AssetError(InputError):
@@ -64,7 +74,10 @@ class ShaderError(UmbrageError):
         self.file = file
         self.line = line
         self.message = message
-        super().__init__(f"{file}:{line}: {message}")
+        super().__init__(file, line, message)
+
+    def __str__(self) -> str:
+        return f"{self.file}:{self.line}: {self.message}"
 
 
 class Cancelled(UmbrageError):

@@ -13,7 +13,7 @@ from pydantic import Field
 
 import renderer
 from renderer.core.errors import InputError, UmbrageError
-from renderer.core.params import _kind_of
+from renderer.core.params import kind_of
 from renderer.core.technique import Phenomenon, Technique
 
 SHADERS = Path(renderer.__file__).parent.parent / "shaders"
@@ -33,8 +33,8 @@ def techniques(phenomenon: str, slot: str) -> dict[str, type[Technique]]:
         for value in vars(loaded).values():
             if not (inspect.isclass(value) and issubclass(value, Technique) and value.__module__ == loaded.__name__):
                 continue
-            if _kind_of(value) != module:
-                raise UmbrageError(f"{loaded.__name__}: the technique's kind is {_kind_of(value)!r}, not its file's name")
+            if kind_of(value) != module:
+                raise UmbrageError(f"{loaded.__name__}: its kind is {kind_of(value)!r}, not its file's name")
             if not (SHADERS / glsl_file(phenomenon, slot, module)).is_file():
                 raise UmbrageError(f"{loaded.__name__}: no {glsl_file(phenomenon, slot, module)} beside it")
             found[module] = value

@@ -55,8 +55,8 @@ class Bake:
 
     Attributes:
         name: role of its result in the scene, as `pattern`.
-        function: module-level function `(arguments, inputs, progress) -> Arrays`, picklable; `progress(fraction, words)` raises
-            `Cancelled` when the work is no longer wanted.
+        function: module-level function `(arguments, inputs, progress) -> Arrays`, picklable;
+            `progress(fraction, words)` raises `Cancelled` when the work is no longer wanted.
         arguments: JSON values; with the function's name and version, the cache key.
         inputs: bakes whose arrays it needs.
         version: raised when the function's result changes.
@@ -71,18 +71,33 @@ class Bake:
     seconds: float = 1.0
 
 
+@dataclass(frozen=True)
+class BakedArrays:
+    """What a bake gave, with the key of its content: equal keys mean equal arrays."""
+
+    key: str
+    arrays: Arrays
+
+
 class SceneRenderer(Protocol):
-    """Draws one phenomenon; lives on the GL thread. Made by `Phenomenon.open(gl)`."""
+    """Draws one phenomenon for every view; lives on the GL thread."""
 
-    def load(self, baked: Mapping[str, Arrays]) -> None:
-        """Upload what was baked (by bake name); called again when any of it changed."""
+    def draw(
+        self,
+        state: Any,
+        baked: Mapping[str, BakedArrays],
+        size: tuple[int, int],
+        offset: tuple[float, float],
+        sample: int,
+    ) -> None:
+        """Draw one sample as linear premultiplied radiance into the bound framebuffer.
 
-    def draw(self, state: Any, width: int, height: int, sample: int) -> Any:
-        """Draw sample number `sample` (its sub-pixel position follows from the number) as linear radiance,
-        premultiplied, into a float target of its own, and return that texture."""
-
-    def probe(self, state: Any, x: float, y: float) -> dict[str, Any]:
-        """What lies at a point of the picture (x, y in [0, 1], row 0 at the top): position, elevation, radiance."""
+        Args:
+            state, baked: the document and what it needed baked, by name.
+            size: (width, height) in pixels.
+            offset: of the sample inside its pixel, from the top-left corner.
+            sample: its number, from which any jitter follows.
+        """
 
     def release(self) -> None:
         """Free every GL object."""
