@@ -175,6 +175,7 @@ class GL:
 
     def reset(self) -> None:
         """Put the pipeline's switches where every job finds them: all off, ordinary blending, nothing half bound."""
+        self._nowhere.viewport = 0, 0, 1, 1  # a job may have set it while nothing else was bound
         self._nowhere.use()
         self._ctx.enable_only(moderngl.NOTHING)
         self._ctx.blend_func = moderngl.SRC_ALPHA, moderngl.ONE_MINUS_SRC_ALPHA

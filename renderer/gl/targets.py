@@ -120,14 +120,29 @@ class Accumulator:
         Raises:
             UmbrageError: a sample out of turn, which would make the mean depend on history, or of another size.
         """
-        if sample_index not in (0, self.samples):
-            raise UmbrageError(f"sample {sample_index} came after {self.samples} samples")
+        self._check_turn(sample_index)
         if texture.size != self.size:
             raise UmbrageError(f"a sample of {texture.size} pixels cannot be added to {self.size}")
         self._sum.use()
         _copy(self._gl, texture, 1.0, add=sample_index > 0)
         self.samples = sample_index + 1
         self._mean_of = 0
+
+    def draw(self, sample_index: int, draw: Callable[[], None]) -> None:
+        """Have `draw` add a sample itself, with one full-screen pass into the bound sum; sample 0 starts afresh.
+
+        Raises:
+            UmbrageError: a sample out of turn.
+        """
+        self._check_turn(sample_index)
+        self._sum.use()
+        with _blending(self._gl, add=sample_index > 0):
+            draw()
+        self.samples = sample_index + 1
+
+    def _check_turn(self, sample_index: int) -> None:
+        if sample_index not in (0, self.samples):
+            raise UmbrageError(f"sample {sample_index} came after {self.samples} samples")
 
     @property
     def mean_texture(self) -> moderngl.Texture:

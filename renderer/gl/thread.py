@@ -30,7 +30,7 @@ class GLThread:
     """Creates and owns the context, runs jobs one at a time in the order in which their places were taken.
 
     A submitted job takes a place of its own. A mailbox has one place: a newer job posted to it before it starts
-    replaces the older one and keeps its place, so that mailboxes take turns and a waiting job waits for at most one of each.
+    replaces the older one and keeps its place: mailboxes take turns, and a job waits for at most one of each.
     A job that needs another's result is posted when that one's future is done.
 
     Raises:
