@@ -1,8 +1,8 @@
 """Exact horizons of an elevation grid: the largest elevation angle that the terrain reaches along an azimuth.
 
 The surface is bilinear in each cell, the eye stands on it, the Earth is flat and nothing lies beyond the grid. Along a
-ray, the height over one cell is a quadratic of the distance s: the slope (h(s) - h0) / s has its extremes at the ends of
-the cell's segment and where s^2 = c0 / c2, so that the maximum is found in closed form and no step size enters.
+ray, the height over one cell is a quadratic of the distance s: the slope (h(s) - h0) / s has its extremes at the ends
+of the cell's segment and where s^2 = c0 / c2, so that the maximum is in closed form and no step size enters.
 `horizon_rad = atan(sup over s > 0 of (h(s) - h0) / s)`: not clamped at 0.
 """
 

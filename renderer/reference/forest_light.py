@@ -1,0 +1,214 @@
+"""What a ray of the forest reference carries: light scattered at each step, with exact visibility of the sun.
+
+Radiance leaving matter: albedo / pi (E_sun V f + E_sky a). Steps along the view ray are all integrated; only the sun's
+visibility V, which costs a march of its own, is sampled: by strata of equal unshadowed sunlight, one jittered shadow ray
+each. The estimate is unbiased for any number of strata, and equals the unshadowed sum exactly where nothing is shadowed.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+
+from renderer.reference.forest_lookup import bilinear, channel_at, foot, ground_normal, texel, tint
+from renderer.reference.forest_march import (
+    ALL,
+    COLUMNS,
+    DS,
+    FULL,
+    GROUND,
+    LEFT,
+    NONE,
+    NOT_OWN,
+    ONLY_OWN,
+    OPAQUE,
+    SIGMA,
+    TK,
+    TU,
+    TV,
+    S,
+    march,
+)
+
+NOMINAL_ALBEDO = 0.1
+"""Albedo of a leaf (linear, mean over channels) that the number of strata refers to: brighter matter gets more rays."""
+
+DEPTH_LIMIT = 14.0
+"""Optical depth after which a march stops: 8e-7 of the light is left."""
+
+LIFT = 1e-3
+"""Metres above the ground at which its shadow rays start, so that rounding does not make a facet shade itself."""
+
+TERRAIN, FOREST_ON_GROUND, TREE_ON_TREE, WITHIN_TREE, GOURAUD = range(5)
+"""Switches of one rendering, in the order the compiled functions read them."""
+
+
+@njit(cache=True, nogil=True)
+def _uniform(seed: int, pixel: int, stratum: int) -> float:
+    """A number in [0, 1) that depends on nothing but its arguments: splitmix64 (Steele, Lea and Flood 2014)."""
+    z = np.uint64(seed) * np.uint64(0x9E3779B97F4A7C15) + np.uint64(pixel)
+    for word in (np.uint64(0), np.uint64(stratum)):
+        z = (z + word + np.uint64(0x9E3779B97F4A7C15)) & np.uint64(0xFFFFFFFFFFFFFFFF)
+        z = (z ^ (z >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
+        z = (z ^ (z >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
+        z = z ^ (z >> np.uint64(31))
+    return float(z >> np.uint64(11)) * 2.0**-53
+
+
+@njit(cache=True, nogil=True)
+def visibility(scene, switches, x, y, z, step, mode, own, empty):
+    """Share of the sun's beam that reaches a point: exp(-integral of extinction), 0 where the ground is in the way."""
+    sun = (scene.sun[0], scene.sun[1], scene.sun[2])
+    if sun[2] <= 0.0 and switches[TERRAIN]:
+        # the ground continues without end: a ray that does not rise meets it
+        return 0.0
+    if mode == NONE and not switches[TERRAIN]:
+        return 1.0
+    status, _, tau, _ = march(scene, (x, y, z), sun, 0.0, 0.0, DEPTH_LIMIT, step, switches[TERRAIN], mode, own, empty)
+    return 0.0 if status in (GROUND, OPAQUE) else math.exp(-tau)
+
+
+@njit(cache=True, nogil=True)
+def _canopy_light(scene, switches, x, y, event, out):
+    """Unshadowed radiance that matter at a recorded step scatters: out[0:3] from the sky, out[3:6] from the sun."""
+    tu, tv, tk = event[TU], event[TV], event[TK]
+    alpha = channel_at(scene.colour, 3, tu, tv, tk)
+    ambient = channel_at(scene.normal, 3, tu, tv, tk)
+    if switches[GOURAUD]:
+        nx, ny, nz = ground_normal(scene, x, y)
+    else:
+        nx = 2.0 * channel_at(scene.normal, 0, tu, tv, tk) - 1.0
+        ny = 2.0 * channel_at(scene.normal, 1, tu, tv, tk) - 1.0
+        nz = 2.0 * channel_at(scene.normal, 2, tu, tv, tk) - 1.0
+    length = math.sqrt(nx * nx + ny * ny + nz * nz)
+    facing = 0.0
+    if length > 0.0:
+        facing = max((nx * scene.sun[0] + ny * scene.sun[1] + nz * scene.sun[2]) / length, 0.0)
+    foot_x, foot_y = foot(scene, x, y, tu, tv, tk, False)
+    shade = (1.0 + scene.tint * tint(foot_x, foot_y)) / (math.pi * alpha)
+    for c in range(3):
+        albedo = channel_at(scene.colour, c, tu, tv, tk) * shade
+        out[c] = albedo * scene.e_sky[c] * ambient
+        out[3 + c] = albedo * scene.e_sun[c] * facing
+
+
+@njit(cache=True, nogil=True)
+def _ground_light(scene, switches, x, y, z, step, empty, share, total):
+    """Add the light that bare ground sends up, times `share`."""
+    nx, ny, nz = ground_normal(scene, x, y)
+    ambient = 1.0
+    if bilinear(scene.cover, scene.cell, x, y) > 0.5:
+        tu, tv = texel(scene, x, y)
+        ambient = channel_at(scene.normal, 3, tu, tv, 0.0)
+    ambient *= 0.5 * (1.0 + nz)
+    facing = max(nx * scene.sun[0] + ny * scene.sun[1] + nz * scene.sun[2], 0.0)
+    seen = 0.0
+    if facing > 0.0:
+        mode = ALL if switches[FOREST_ON_GROUND] else NONE
+        seen = visibility(scene, switches, x, y, z + LIFT, step, mode, (0.0, 0.0), empty)
+    for c in range(3):
+        light = scene.e_sun[c] * facing * seen + scene.e_sky[c] * ambient
+        total[c] += share * scene.ground[c] / math.pi * light
+
+
+@njit(cache=True, nogil=True)
+def _seen(scene, switches, o, d, event, step, empty):
+    """Sun visibility of a recorded canopy step, under the switches for its own tree and the others."""
+    x, y, z = o[0] + d[0] * event[S], o[1] + d[1] * event[S], o[2] + d[2] * event[S]
+    others, within = switches[TREE_ON_TREE], switches[WITHIN_TREE]
+    mode = ALL if others and within else (NOT_OWN if others else (ONLY_OWN if within else NONE))
+    own = foot(scene, x, y, event[TU], event[TV], event[TK], True)
+    return visibility(scene, switches, x, y, z, step, mode, own, empty)
+
+
+@njit(cache=True, nogil=True)
+def _scatter(
+    scene, switches, o, d, record, light, n, tau, step, shadow_step, quantum, seed, pixel, first, empty, total
+):
+    """Add what n recorded steps scatter, from optical depth `tau` on.
+
+    Returns the variance of the mean over channels, and the number of random numbers used.
+    """
+    sum_sun = 0.0
+    for e in range(n):
+        depth = record[e, SIGMA] * record[e, DS]
+        weight = math.exp(-tau) * -math.expm1(-depth)
+        tau += depth
+        _canopy_light(scene, switches, o[0] + d[0] * record[e, S], o[1] + d[1] * record[e, S], record[e], light[e])
+        for c in range(3):
+            total[c] += weight * light[e, c]
+            light[e, 3 + c] *= weight
+        light[e, 0] = (light[e, 3] + light[e, 4] + light[e, 5]) / 3.0
+        sum_sun += light[e, 0]
+    if sum_sun <= 0.0:
+        return 0.0, 0
+    if quantum <= 0.0:
+        for e in range(n):
+            if light[e, 0] > 0.0:
+                seen = _seen(scene, switches, o, d, record[e], shadow_step, empty)
+                for c in range(3):
+                    total[c] += light[e, 3 + c] * seen
+        return 0.0, 0
+    # an even number of strata, so that each has a neighbour to tell the variance from
+    strata = 2 * max(1, math.ceil(0.5 * sum_sun / quantum))
+    part, e, passed, variance, before = sum_sun / strata, 0, light[0, 0], 0.0, 0.0
+    for k in range(strata):
+        target = (k + _uniform(seed, pixel, first + k)) * part
+        while passed < target and e < n - 1:
+            e += 1
+            passed += light[e, 0]
+        while light[e, 0] <= 0.0 and e > 0:
+            # rounding can leave the last target beyond the sum, on a step that gives no sunlight
+            e -= 1
+        seen = _seen(scene, switches, o, d, record[e], shadow_step, empty)
+        for c in range(3):
+            total[c] += part * seen * light[e, 3 + c] / light[e, 0]
+        if k % 2:
+            variance += (part * (seen - before)) ** 2
+        before = seen
+    return variance, strata
+
+
+@njit(cache=True, nogil=True)
+def rows(scene, switches, origins, directions, behind, first, last, step_of, quantum, seed, sample, picture, variances):
+    """Add one sub-pixel sample of rows [first, last) to `picture` (H, W, 4) and its variance to `variances` (H, W).
+
+    Args:
+        step_of: (vertical step, longest step) of the march, m.
+        quantum: unshadowed sunlight (mean radiance) per shadow ray; 0 gives every step its own.
+    """
+    record, light = np.empty((512, COLUMNS)), np.empty((512, 6))
+    empty, total = np.empty((0, COLUMNS)), np.zeros(3)
+    width = origins.shape[1]
+    shadow_step = min(step_of[0] / max(abs(scene.sun[2]), 1e-9), step_of[1])
+    nowhere = (0.0, 0.0)
+    for row in range(first, last):
+        for column in range(width):
+            o = (origins[row, column, 0], origins[row, column, 1], origins[row, column, 2])
+            d = (directions[row, column, 0], directions[row, column, 1], directions[row, column, 2])
+            step = min(step_of[0] / max(abs(d[2]), 1e-9), step_of[1])
+            total[:] = 0.0
+            s, tau, used, status, variance = 0.0, 0.0, 0, FULL, 0.0
+            pixel = (row * width + column) * 4096 + sample
+            while status == FULL:
+                before = tau
+                status, s, tau, n = march(scene, o, d, s, tau, DEPTH_LIMIT, step, True, ALL, nowhere, record)
+                if n:
+                    more, drawn = _scatter(scene, switches, o, d, record, light, n, before, step, shadow_step, quantum,
+                                           seed, pixel, used, empty, total)  # fmt: skip
+                    variance += more
+                    used += drawn
+            through = 0.0 if status == OPAQUE else math.exp(-tau)
+            if status == GROUND:
+                _ground_light(scene, switches, o[0] + d[0] * s, o[1] + d[1] * s, o[2] + d[2] * s, shadow_step, empty,
+                              through, total)  # fmt: skip
+                through = 0.0
+            elif status == LEFT:
+                for c in range(3):
+                    total[c] += through * behind[row, column, c]
+            for c in range(3):
+                picture[row, column, c] += total[c]
+            picture[row, column, 3] += 1.0 - through
+            variances[row, column] += variance

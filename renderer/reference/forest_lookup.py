@@ -1,0 +1,153 @@
+"""What stands at a point of the forest: the tiling's hash, the atlas between its texels, cover and ground, in float64.
+
+Written from the world's definition alone, so that a mistake in the shaders is not repeated here. Tiles: Neyret and Cani
+1999; hash: the lowbias32 finaliser (Wellons 2018). All functions are compiled and release the interpreter's lock.
+"""
+
+from __future__ import annotations
+
+import math
+
+from numba import njit
+
+from renderer.reference.forest_world import ANCHOR_STEPS, EVERYWHERE, NOWHERE, TILES, Scene
+
+MASK = 0xFFFFFFFF
+ALPHA_MAX = 1.0 - 2.0**-12
+"""Opacity at which extinction stops growing: 8.3 a voxel, below a thousandth of the light after one voxel."""
+
+
+@njit(cache=True, nogil=True, inline="always")
+def edge_hash(i: int, j: int, d: int, seed: int) -> int:
+    """32 bits from a lattice cell, an edge direction (or 3, 4 for the two triangles) and a seed."""
+    x = ((i & MASK) * 0x8DA6B343) & MASK
+    x ^= ((j & MASK) * 0xD8163841) & MASK
+    x ^= (d * 0xCB1AB31F) & MASK
+    x ^= ((seed & MASK) * 0x165667B1) & MASK
+    x ^= x >> 16
+    x = (x * 0x7FEB352D) & MASK
+    x ^= x >> 15
+    x = (x * 0x846CA68B) & MASK
+    return x ^ (x >> 16)
+
+
+@njit(cache=True, nogil=True)
+def rhombus(scene: Scene, i: int, j: int, down: int) -> tuple[int, int]:
+    """Atlas rhombus (p, q) of the upward or downward triangle of lattice cell (i, j)."""
+    bottom = edge_hash(i, j + down, 0, scene.seed) & 1
+    left = edge_hash(i + down, j, 1, scene.seed) & 1
+    diagonal = edge_hash(i, j, 2, scene.seed) & 1
+    variant = edge_hash(i, j, 3 + down, scene.seed) & 1
+    index = bottom + 2 * left + 4 * diagonal
+    return int(scene.tile[down, variant, index, 0]), int(scene.tile[down, variant, index, 1])
+
+
+@njit(cache=True, nogil=True)
+def lattice(scene: Scene, x: float, y: float) -> tuple[float, float]:
+    """Lattice coordinates: (x, y) = u (a, 0) + v (a/2, a sqrt(3)/2)."""
+    v = y / (scene.side * math.sqrt(0.75))
+    return x / scene.side - 0.5 * v, v
+
+
+@njit(cache=True, nogil=True)
+def texel(scene: Scene, x: float, y: float) -> tuple[float, float]:
+    """Atlas texel coordinates of a place, texel centres at integers."""
+    u, v = lattice(scene, x, y)
+    i, j = math.floor(u), math.floor(v)
+    p, q = rhombus(scene, i, j, 0 if u - i + v - j < 1.0 else 1)
+    per = scene.colour.shape[2] / TILES
+    return (p + u - i) * per - 0.5, (q + v - j) * per - 0.5
+
+
+@njit(cache=True, nogil=True)
+def bilinear(grid, cell: float, x: float, y: float) -> float:
+    """A node grid at a place, continued by its edge's value."""
+    last = grid.shape[0] - 1
+    column = min(max(x / cell + 0.5 * last, 0.0), float(last))
+    row = min(max(0.5 * last - y / cell, 0.0), float(last))
+    j, i = min(int(column), last - 1), min(int(row), last - 1)
+    u, v = column - j, row - i
+    return (grid[i, j] * (1 - u) + grid[i, j + 1] * u) * (1 - v) + (
+        grid[i + 1, j] * (1 - u) + grid[i + 1, j + 1] * u
+    ) * v
+
+
+@njit(cache=True, nogil=True)
+def ground_normal(scene: Scene, x: float, y: float) -> tuple[float, float, float]:
+    """Unit normal of the smooth ground: slopes by central differences at the nodes, bilinear between them."""
+    a, b = bilinear(scene.slope_x, scene.cell, x, y), bilinear(scene.slope_y, scene.cell, x, y)
+    length = math.sqrt(a * a + b * b + 1.0)
+    return -a / length, -b / length, 1.0 / length
+
+
+@njit(cache=True, nogil=True)
+def alpha_at(scene: Scene, tu: float, tv: float, tk: float) -> float:
+    """Opacity 0..1 of one voxel length, trilinear between texel centres, wrapped along the sides."""
+    size, layers = scene.colour.shape[2], scene.colour.shape[0]
+    i, j, k = math.floor(tu), math.floor(tv), math.floor(tk)
+    u, v, w = tu - i, tv - j, tk - k
+    i0, i1, j0, j1 = i % size, (i + 1) % size, j % size, (j + 1) % size
+    k0, k1 = min(max(k, 0), layers - 1), min(max(k + 1, 0), layers - 1)
+    c = scene.colour
+    low = (c[k0, j0, i0, 3] * (1 - u) + c[k0, j0, i1, 3] * u) * (1 - v)
+    low += (c[k0, j1, i0, 3] * (1 - u) + c[k0, j1, i1, 3] * u) * v
+    high = (c[k1, j0, i0, 3] * (1 - u) + c[k1, j0, i1, 3] * u) * (1 - v)
+    high += (c[k1, j1, i0, 3] * (1 - u) + c[k1, j1, i1, 3] * u) * v
+    return (low * (1 - w) + high * w) / 255.0
+
+
+@njit(cache=True, nogil=True)
+def channel_at(atlas, channel: int, tu: float, tv: float, tk: float) -> float:
+    """One channel 0..1 of an atlas array, trilinear as `alpha_at`."""
+    size, layers = atlas.shape[2], atlas.shape[0]
+    i, j, k = math.floor(tu), math.floor(tv), math.floor(tk)
+    total = 0.0
+    for dk in range(2):
+        for dj in range(2):
+            for di in range(2):
+                weight = abs(1 - dk - (tk - k)) * abs(1 - dj - (tv - j)) * abs(1 - di - (tu - i))
+                layer = min(max(k + dk, 0), layers - 1)
+                total += weight * atlas[layer, (j + dj) % size, (i + di) % size, channel]
+    return total / 255.0
+
+
+@njit(cache=True, nogil=True)
+def foot(scene: Scene, x: float, y: float, tu: float, tv: float, tk: float, centred: bool) -> tuple[float, float]:
+    """Foot of the tree that owns the nearest voxel.
+
+    The world adds the stored offset to the sample; `centred` adds it to the voxel's centre instead, which gives every
+    sample of a tree the same foot, and is what tells trees apart.
+    """
+    size, layers = scene.anchor.shape[2], scene.anchor.shape[0]
+    i, j, k = math.floor(tu + 0.5), math.floor(tv + 0.5), math.floor(tk + 0.5)
+    k = min(max(k, 0), layers - 1)
+    if centred:
+        step = scene.side * TILES / size
+        x += ((i - tu) + 0.5 * (j - tv)) * step
+        y += math.sqrt(0.75) * (j - tv) * step
+    stored_x = scene.anchor[k, j % size, i % size, 0]
+    stored_y = scene.anchor[k, j % size, i % size, 1]
+    return x + (stored_x - 128.0) / ANCHOR_STEPS, y + (stored_y - 128.0) / ANCHOR_STEPS
+
+
+@njit(cache=True, nogil=True)
+def stands(scene: Scene, presence: int, x: float, y: float, tu: float, tv: float, tk: float) -> bool:
+    """Whether the tree that owns a sample exists: its foot is covered."""
+    if presence == EVERYWHERE:
+        return True
+    if presence == NOWHERE:
+        return False
+    foot_x, foot_y = foot(scene, x, y, tu, tv, tk, False)
+    return bilinear(scene.cover, scene.cell, foot_x, foot_y) > 0.5
+
+
+@njit(cache=True, nogil=True)
+def extinction(scene: Scene, alpha: float) -> float:
+    """Extinction, 1/m, of an opacity that is meant for one voxel length."""
+    return -math.log(1.0 - min(alpha, ALPHA_MAX)) / scene.voxel
+
+
+@njit(cache=True, nogil=True)
+def tint(x: float, y: float) -> float:
+    """Smooth value in [-1, 1] that varies from tree to tree, of a foot in metres."""
+    return math.sin(x * 0.37 + 1.3 * math.sin(y * 0.11)) * math.sin(y * 0.41 + 1.7 * math.sin(x * 0.13))

@@ -1,0 +1,197 @@
+"""The forest as plain arrays, and what the reference derives from them to march it without looking where nothing is."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage
+
+from renderer.core.errors import InputError
+
+Floats = NDArray[np.float64]
+Bytes = NDArray[np.uint8]
+Colour3 = tuple[float, float, float]
+
+BLOCK = 8
+"""Terrain cells along the side of a block whose greatest height lets a ray skip it: about the square root of a default
+ray's 64 cells a block row, so that walking blocks and walking cells cost the same."""
+
+TILES = 4
+"""Rhombi along each side of the atlas: 4 x 4 x 2 triangles hold the 16 edge triples in two variants each."""
+
+ANCHOR_STEPS = 16.0
+"""Steps of a stored anchor offset per metre, from 128 = no offset."""
+
+REACH = 127 / ANCHOR_STEPS
+"""Longest stored offset from a voxel to its tree's foot along one axis, m."""
+
+
+@dataclass(frozen=True)
+class ForestWorld:
+    """One forest, lit by one sun. Axes: x east, y north, z up; metres; linear colours.
+
+    Attributes:
+        elevation: (N, N) ground height at the nodes, row 0 = northern edge, the square centred on the origin; bilinear
+            between nodes, continued by its edge's value.
+        cover: (N, N) cover on the same nodes, 0..1: a tree stands where it exceeds 0.5 at the tree's foot.
+        cell: distance between nodes, m.
+        canopy_height, tile_side, voxel: height of the layer, side of the tiling's triangles, length for which alpha is
+            meant, m.
+        colour: (K, J, I, 4) uint8: albedo x opacity, opacity. Layer 0 lies on the ground, I runs along the first edge
+            direction and J along the second.
+        normal: (K, J, I, 4) uint8: normal / 2 + 1/2 and the sky's share.
+        anchor: (K, J, I, 4) uint8: offset to the tree's foot (from 128, sixteenths of a metre) in the first two.
+        tile: (2, 2, 8, 2) atlas rhombus [down, variant, bottom + 2 left + 4 diagonal].
+        seed: of the tiling's hash.
+        tint_strength: of the colour change from tree to tree.
+        ground_albedo: linear reflectance of bare ground.
+        e_sun: irradiance on a plane facing the sun, W m-2, by channel.
+        e_sky: irradiance of the sky on the horizontal.
+        sun: unit vector to the sun.
+        background: radiance behind everything for directions (M, 3) -> (M, 3); None leaves it empty (alpha < 1).
+    """
+
+    elevation: NDArray[np.floating]
+    cover: NDArray[np.floating]
+    cell: float
+    canopy_height: float
+    tile_side: float
+    voxel: float
+    colour: Bytes
+    normal: Bytes
+    anchor: Bytes
+    tile: Bytes
+    seed: int
+    tint_strength: float
+    ground_albedo: Colour3
+    e_sun: Colour3
+    e_sky: Colour3
+    sun: Colour3
+    background: Callable[[Floats], Floats] | None = None
+
+    def __post_init__(self) -> None:
+        """Refuse arrays that do not fit together.
+
+        Raises:
+            InputError: naming the wrong one.
+        """
+        shape = self.elevation.shape
+        if self.elevation.ndim != 2 or min(shape) < 2 or shape[0] != shape[1]:
+            raise InputError("elevation", f"has shape {shape}", "a square of at least 2 x 2 nodes")
+        if self.cover.shape != shape:
+            raise InputError("cover", f"has shape {self.cover.shape}", f"{shape} as the elevation")
+        atlas = self.colour.shape
+        if len(atlas) != 4 or atlas[3] != 4 or atlas[1] != atlas[2] or atlas[2] % TILES:
+            raise InputError("colour", f"has shape {atlas}", f"(K, M, M, 4), M a multiple of {TILES}")
+        for name in ("colour", "normal", "anchor"):
+            if getattr(self, name).shape != atlas or getattr(self, name).dtype != np.uint8:
+                raise InputError(name, f"is {getattr(self, name).dtype} {getattr(self, name).shape}", f"uint8 {atlas}")
+        if self.tile.shape != (2, 2, 8, 2) or int(self.tile.max()) >= TILES:
+            raise InputError("tile", "is no tile table", f"(2, 2, 8, 2), each below {TILES}")
+        for name in ("cell", "canopy_height", "tile_side", "voxel"):
+            if not (math.isfinite(getattr(self, name)) and getattr(self, name) > 0):
+                raise InputError(name, "must be a positive length")
+        if not (np.isfinite(self.elevation).all() and np.isfinite(self.cover).all()):
+            raise InputError("elevation", "or cover holds values that are not finite")
+        if not math.isclose(sum(c * c for c in self.sun), 1.0, abs_tol=1e-6):
+            raise InputError("sun", "must be a unit vector")
+
+
+class Scene(NamedTuple):
+    """What the compiled functions read: `ForestWorld` in float64, and the bounds derived from it."""
+
+    elevation: Floats
+    slope_x: Floats
+    slope_y: Floats
+    cover: Floats
+    presence: Bytes
+    block_top: Floats
+    top: float
+    cell: float
+    height: float
+    side: float
+    voxel: float
+    colour: Bytes
+    normal: Bytes
+    anchor: Bytes
+    safe: Bytes
+    tile: Bytes
+    seed: int
+    tint: float
+    ground: Floats
+    e_sun: Floats
+    e_sky: Floats
+    sun: Floats
+
+
+NOWHERE, EVERYWHERE, SOMEWHERE = 0, 1, 2
+"""Presence of trees over a cell: no anchor that a voxel there can name is covered, all are, or each must be asked."""
+
+
+def prepare(world: ForestWorld) -> Scene:
+    """Derive bounds, slopes and distances from a world."""
+    z = np.ascontiguousarray(world.elevation, np.float64)
+    cover = np.ascontiguousarray(world.cover, np.float64)
+    # one-sided differences at the edges, central ones elsewhere; rows run south
+    slope_y, slope_x = (np.ascontiguousarray(g) for g in np.gradient(z, world.cell))
+    return Scene(
+        elevation=z, slope_x=slope_x, slope_y=-slope_y, cover=cover, presence=_presence(cover, world.cell),
+        block_top=_block_top(z), top=float(z.max()), cell=float(world.cell), height=float(world.canopy_height),
+        side=float(world.tile_side), voxel=float(world.voxel), colour=np.ascontiguousarray(world.colour),
+        normal=np.ascontiguousarray(world.normal), anchor=np.ascontiguousarray(world.anchor),
+        safe=_safe(world.colour[..., 3]), tile=np.ascontiguousarray(world.tile, np.uint8), seed=int(world.seed),
+        tint=float(world.tint_strength), ground=np.array(world.ground_albedo, np.float64),
+        e_sun=np.array(world.e_sun, np.float64), e_sky=np.array(world.e_sky, np.float64),
+        sun=np.array(world.sun, np.float64))  # fmt: skip
+
+
+def _block_top(z: Floats) -> Floats:
+    """Greatest height of each block of cells, its border nodes included: no bilinear value inside exceeds it."""
+    count = -(-(z.shape[0] - 1) // BLOCK)
+    blocks = np.empty((count, count))
+    for row in range(count):
+        for column in range(count):
+            blocks[row, column] = z[
+                row * BLOCK : row * BLOCK + BLOCK + 1, column * BLOCK : column * BLOCK + BLOCK + 1
+            ].max()
+    return blocks
+
+
+def _presence(cover: Floats, cell: float) -> Bytes:
+    """For each cell, whether the trees that may reach into it all stand, none does, or each must be asked.
+
+    A voxel names a foot at most `REACH` away along either axis; the cover there lies between the extremes of the nodes
+    around it, because it is bilinear.
+    """
+    reach = math.ceil(REACH / cell)
+    size = 2 * reach + 2
+    # the window of cell i spans nodes i - reach .. i + 1 + reach; scipy centres an even window at size // 2
+    low = ndimage.minimum_filter(cover, size, mode="nearest", origin=-1)[:-1, :-1]
+    high = ndimage.maximum_filter(cover, size, mode="nearest", origin=-1)[:-1, :-1]
+    return np.where(low > 0.5, EVERYWHERE, np.where(high <= 0.5, NOWHERE, SOMEWHERE)).astype(np.uint8)
+
+
+def _safe(alpha: Bytes) -> Bytes:
+    """Chessboard distance, in texels, from each interpolation cell of the atlas to the nearest one with any opacity.
+
+    Cell (k, j, i) lies between the texel centres k - 1 and k (clamped) upwards, and i and i + 1 (wrapped) along each
+    side: [k + 1, j, i] with k from -1. Distances stop at 255; along the sides the atlas is a torus.
+    """
+    filled = alpha > 0
+    layers = np.concatenate([filled[:1], filled, filled[-1:]])
+    either = layers[:-1] | layers[1:]
+    either = either | np.roll(either, -1, axis=1)
+    either = either | np.roll(either, -1, axis=2)
+    if not either.any():
+        return np.full(either.shape, 255, np.uint8)
+    margin = min(either.shape[1], 64)
+    padded = np.pad(~either, ((0, 0), (margin, margin), (margin, margin)), mode="wrap")
+    distance = ndimage.distance_transform_cdt(padded, metric="chessboard")
+    # beyond the margin the torus comes round again, unseen: no distance may claim to know what is there
+    inner = distance[:, margin:-margin, margin:-margin]
+    return np.minimum(inner, min(margin, 255)).astype(np.uint8)
