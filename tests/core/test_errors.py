@@ -18,7 +18,8 @@ from renderer.core.errors import (
 
 
 @pytest.mark.parametrize(("error", "sentence"), [
-    (InputError("sun.azimuth", "is too large", "at most 360 deg"), "sun.azimuth: is too large (allowed: at most 360 deg)"),
+    (InputError("sun.azimuth", "is too large", "at most 360 deg"),
+     "sun.azimuth: is too large (allowed: at most 360 deg)"),
     (AssetError("terrain", "has a hole"), "terrain: has a hole"),
     (LimitError("", "too much"), "too much"),
     (InvalidDocument([InputError("a", "b"), InputError("c", "d")]), "a: b; c: d"),
