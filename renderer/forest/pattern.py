@@ -1,0 +1,135 @@
+"""Bakes the pattern: every tile of the forest as one atlas of voxels, made from tree geometry."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from renderer.core.technique import Arrays
+from renderer.forest.ambient import sky_share
+from renderer.forest.nursery import nursery
+from renderer.forest.pattern_kernels import extend, lay
+from renderer.forest.pattern_mips import encode_colour, encode_normal, mips
+from renderer.forest.planting import Standing, plant
+from renderer.forest.presence import safe_distance
+from renderer.forest.tiles import RHOMBI, lattice, tile_table
+from renderer.forest.tree import Tree
+from renderer.forest.world_scale import CANOPY_HEIGHT, TILE_SIDE, VOXEL
+from renderer.world.voxelise import Grid, opacity_of, voxelise
+
+CELL = round(TILE_SIDE / VOXEL)
+"""Voxels a side of a rhombus."""
+
+SIZE = RHOMBI * CELL
+"""Voxels a side of the atlas."""
+
+LAYERS = round(CANOPY_HEIGHT / VOXEL)
+"""Voxels from the ground to the top of the canopy."""
+
+AXES = lattice(VOXEL)
+"""Sides of a voxel [m] along u and v; the third is VOXEL upwards."""
+
+OPAQUE = np.float32(1 - 2**-12)
+"""Opacity at which extinction is cut off."""
+
+
+@dataclass(frozen=True)
+class Atlas:
+    """Sums over everything laid into the atlas so far, indexed [k, j, i]; see `Voxels` for the units."""
+
+    mask: np.ndarray
+    normal: np.ndarray
+    sums: np.ndarray
+    area: np.ndarray
+    most: np.ndarray
+    anchor: np.ndarray
+
+    @staticmethod
+    def empty() -> Atlas:
+        """An atlas of air; air belongs to a foot straight below it."""
+        shape = (LAYERS, SIZE, SIZE)
+        anchor = np.zeros((*shape, 4), np.uint8)
+        anchor[..., :2] = 128
+        return Atlas(np.zeros((3, *shape), np.uint16), np.zeros((*shape, 3), np.float32), np.zeros((*shape, 4), np.float32),
+                     np.zeros(shape, np.float32), np.zeros(shape, np.float32), anchor)
+
+    def add(self, tree: Tree, attributes: np.ndarray, standing: Standing) -> None:
+        """Voxelise one tree and lay it into every rhombus where it stands.
+
+        It is voxelised once, in the frame of its rhombus, so that all its copies are the same to the bit.
+        """
+        vertices = tree.placed(standing.scale, standing.azimuth, standing.foot)
+        sides = np.zeros((3, 3))
+        sides[:2, :2], sides[2, 2] = AXES, VOXEL
+        index = vertices @ np.linalg.inv(sides)
+        low, high = np.floor(index.min(axis=0)).astype(int)[:2], np.ceil(index.max(axis=0)).astype(int)[:2] + 1
+        layers = min(LAYERS, int(np.ceil(index[:, 2].max())) + 1)
+        grid = Grid(np.append(low, 0) @ sides, sides, (int(high[0] - low[0]), int(high[1] - low[1]), layers))
+        found = voxelise(vertices, tree.faces, attributes, grid)
+        lay(found.mask, found.area, found.normal, found.attributes, low, standing.foot, AXES, standing.cells * CELL,
+            self.mask, self.normal, self.sums, self.area, self.most, self.anchor)
+
+
+def bake_pattern(arguments: dict[str, Any], inputs: dict[str, Arrays], progress: Callable[[float, str], None]) -> Arrays:
+    """Make the atlas of all tiles.
+
+    Args:
+        arguments: the document's `canopy`: weights of the species by name, `mesh`, `density`, `seed`.
+        inputs: none. progress: told the share done; may raise `Cancelled`.
+
+    Returns:
+        `colour` uint8 [k, j, i, 4]: linear albedo times opacity, and the opacity over one voxel's length;
+        `normal` uint8 [.., 4]: unit normal in world axes (0.5 n + 0.5), and the share of the sky's light;
+        `anchor` uint8 [.., 4]: offset east and north to the tree's foot, 128 + 16 a metre; safe distance in voxels (Chebyshev distance
+        to matter); 255 in wood;
+        the same with `_1` to `_5` at coarser levels (opacity over the level's own voxel length);
+        `tile` uint8 [is_down, variant, key, 2]: see `tiles`; `trees` float32 [n, 6]: foot x and y in the atlas [m, world axes], height and
+        crown radius [m], number of the species, number of the mesh.
+    """
+    progress(0.0, "growing trees")
+    meshes, weights, kinds = nursery(arguments)
+    standing = plant(meshes, weights, float(arguments["density"]), int(arguments["seed"]))
+    attributes = [np.concatenate([tree.colour, tree.wood[:, None]], axis=1).astype(np.float32) for tree in meshes]
+    atlas = Atlas.empty()
+    for number, tree in enumerate(standing):
+        if number % 8 == 0:
+            progress(0.05 + 0.5 * number / len(standing), "turning trees into voxels")
+        atlas.add(meshes[tree.tree], attributes[tree.tree], tree)
+    level = _level(atlas, progress)
+    progress(0.9, "making coarser levels")
+    result = dict(level)
+    for number, coarse in enumerate(mips(level), start=1):
+        result |= {f"{name}_{number}": array for name, array in coarse.items()}
+    return {**result, "tile": tile_table(), "trees": _list(standing, meshes, kinds)}
+
+
+def _level(atlas: Atlas, progress: Callable[[float, str], None]) -> dict[str, np.ndarray]:
+    """The finest level's bytes."""
+    opacity = opacity_of(atlas.mask)
+    area = np.maximum(atlas.area, np.float32(1e-12))[..., None]
+    colour = np.concatenate([atlas.sums[..., :3] / area * opacity[..., None], opacity[..., None]], axis=-1)
+    encoded = encode_colour(colour)
+    # What is stored is what counts: air is where the byte says so.
+    full = encoded[..., 3] > 0
+    normal = np.zeros((*opacity.shape, 3), np.float32)
+    normal[..., 2] = 1
+    length = np.linalg.norm(atlas.normal, axis=-1)
+    sound = full & (length > 1e-6)
+    normal[sound] = atlas.normal[sound] / length[sound][:, None]
+    atlas.anchor[..., 3] = np.where(atlas.sums[..., 3] > 0.5 * atlas.area, 255, 0) * full
+    extend(full, normal, atlas.anchor, AXES)
+    progress(0.6, "measuring safe distances")
+    atlas.anchor[..., 2] = safe_distance(full)
+    extinction = -np.log1p(-np.minimum(encoded[..., 3].astype(np.float32) / np.float32(255), OPAQUE)) / np.float32(VOXEL)
+    sky = sky_share(extinction, AXES, VOXEL, lambda share: progress(0.68 + 0.2 * share, "gathering light from the sky"))
+    return {"colour": encoded, "normal": encode_normal(np.concatenate([normal, sky[..., None]], axis=-1)), "anchor": atlas.anchor}
+
+
+def _list(standing: Sequence[Standing], meshes: Sequence[Tree], kinds: Sequence[int]) -> np.ndarray:
+    base = lattice(TILE_SIDE)
+    rows = [(*(tree.foot + cell @ base), tree.scale * meshes[tree.tree].height, tree.spread, kinds[tree.tree], tree.tree)
+            for tree in standing for cell in tree.cells]
+    return np.array(rows, np.float32)
