@@ -16,15 +16,13 @@ export function sentence({ field, message, allowed }) {
 
 async function refusal(answer) {
   const body = await answer.json().catch(() => null);
-  const detail = body?.errors ?? body?.detail ?? body;
-  const list = Array.isArray(detail) ? detail : [detail?.message ? detail : { field: "", message: `The server answered ${answer.status}`, allowed: "" }];
-  return new Refused(list.map((item) => ({ field: item.field ?? (item.loc ?? []).join("."), message: item.message ?? item.msg ?? "", allowed: item.allowed ?? "" })));
+  return new Refused(body?.errors ?? [{ field: "", message: `The server answered ${answer.status}`, allowed: "" }]);
 }
 
 async function request(path, options = {}) {
   let answer;
   try {
-    answer = await fetch(path + location.search, options);
+    answer = await fetch(path, options);
   } catch {
     throw new Refused([{ field: "", message: "The server cannot be reached", allowed: "" }]);
   }
@@ -36,7 +34,7 @@ const asJson = (body) => ({ method: "POST", headers: { "Content-Type": "applicat
 
 export const scenes = async () => (await request("api/scenes")).json();
 export const scene = async (name) => (await request(`api/scenes/${encodeURIComponent(name)}`)).json();
-export const measureSun = async (place) => (await request("api/measure/sun", asJson(place))).json();
+export const measureSun = async (moment) => (await request("api/measure/sun", asJson(moment))).json();
 
 /** A finished picture as a blob of `type`. */
 export async function render(state, width, height, type = "image/png") {
@@ -65,8 +63,8 @@ export async function job(body, onProgress, signal) {
     }
     const state = await (await request(`api/jobs/${id}`)).json();
     if (state.result) return state.result;
-    if (["failed", "cancelled", "error"].includes(state.status)) {
-      throw new Refused([{ field: state.error?.field ?? "", message: state.error?.message ?? state.words ?? "The work failed", allowed: "" }]);
+    if (["failed", "cancelled"].includes(state.status)) {
+      throw new Refused(state.errors ?? [{ field: "", message: state.words, allowed: "" }]);
     }
     onProgress(state);
   }

@@ -105,9 +105,12 @@ export class Compare {
   async take(result) {
     if (this.patch) this.link.send({ type: "compare", patch: null });
     this.patch = null;
-    const image = async (url) => createImageBitmap(await (await fetch(url)).blob());
-    this.truth = await image(result.reference);
-    this.errorMap = await image(result.error_map);
+    const image = async (word) => {
+      const [, url] = Object.entries(result.files).find(([name]) => name.startsWith(word));
+      return createImageBitmap(await (await fetch(url)).blob());
+    };
+    this.truth = await image("reference");
+    this.errorMap = await image("error");
     this.numbers.replaceChildren(...NUMBERS.filter(([key]) => Number.isFinite(result[key]))
       .flatMap(([key, title, write]) => [el("dt", { text: title }), el("dd", { text: write(result[key]) })]));
     this.labels("Picture", "Reference");

@@ -75,7 +75,7 @@ class NumberControl extends Control {
     this.entry = el("input", { id: this.id, type: "text", inputmode: "decimal", class: "entry", autocomplete: "off",
       on: { change: () => this.commit(), keydown: (event) => this.key(event) } });
     const unit = el("span", { class: "unit", text: unitOf(node) });
-    this.reset.before(el("span", { class: "number" }, this.entry, unit));
+    this.reset.after(el("span", { class: "number" }, this.entry, unit));
     if (this.bounded) this.body(this.track());
     this.draggable(this.label);
   }
@@ -173,7 +173,7 @@ class SwitchControl extends Control {
   constructor(context, path, node) {
     super(context, path, node);
     this.box = el("input", { id: this.id, type: "checkbox", role: "switch", class: "switch", on: { change: () => this.set(this.box.checked) } });
-    this.reset.before(this.box);
+    this.reset.after(this.box);
   }
 
   show(value) {
@@ -186,7 +186,7 @@ class ChoiceControl extends Control {
     super(context, path, node);
     const options = node.enum.map((value, i) => el("option", { value: i, text: String(value).replaceAll("_", " ") }));
     this.select = el("select", { id: this.id, class: "select", on: { change: () => this.set(node.enum[Number(this.select.value)]) } }, options);
-    this.reset.before(this.select);
+    this.reset.after(this.select);
   }
 
   show(value) {
@@ -198,7 +198,7 @@ class ColourControl extends Control {
   constructor(context, path, node) {
     super(context, path, node);
     this.input = el("input", { id: this.id, type: "color", class: "colour", on: { input: () => this.set(fromHex(this.input.value)) } });
-    this.reset.before(this.input);
+    this.reset.after(this.input);
   }
 
   show(value) {

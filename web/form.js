@@ -78,7 +78,13 @@ export class UnionPart {
     return el("div", { class: "control" }, el("div", { class: "control-head" }, el("span", { class: "label", text: this.node.title })), group);
   }
 
+  /** A member that needs a file waits for it; the others start at their defaults. */
   choose(kind) {
+    if (this.context.schema.needsFile(this.members.get(kind))) {
+      this.context.askFile();
+      this.refresh(this.context.store.document);
+      return;
+    }
     const fresh = this.context.convert?.(this.path, kind) ?? this.context.schema.fresh(this.members.get(kind));
     this.context.store.change(patchOf(this.path, fresh), `${this.path}.kind`);
   }

@@ -30,7 +30,7 @@ let opening = { state: null, scene: null, preset: null };
 const link = new Link(store, () => ({ width: screen.width, height: screen.height, ...opening, ...(store.document ? { state: store.document } : {}) }));
 const notices = new Notices(find("#notices"), link);
 const pointer = new Pointer(find("#surface"), store, link);
-const panels = new Panels(find("#controls"), find("#hint"), store, () => pointer.aspect);
+const panels = new Panels(find("#controls"), find("#hint"), store, () => pointer.aspect, () => upload.choose());
 const sunBar = new SunBar(find("#sun"), store, link, () => panels.context());
 const compare = new Compare(find("#compare"), screen, store, link, notices);
 const gallery = new Gallery(find("#gallery"), find("#scene"), store, choose);

@@ -12,8 +12,8 @@ const COSTS = { live: "Shown with the next frame.", build: "Recompiles the shade
 
 /** Builds the panel from the scene and keeps it in step with the store. */
 export class Panels {
-  constructor(root, hintRoot, store, aspect) {
-    Object.assign(this, { root, hintRoot, store, aspect });
+  constructor(root, hintRoot, store, aspect, askFile) {
+    Object.assign(this, { root, hintRoot, store, aspect, askFile });
     this.controls = new Map();
     this.parts = [];
     store.addEventListener("scene", () => this.build());
@@ -24,6 +24,7 @@ export class Panels {
       store: this.store, schema: this.store.schema, controls: this.controls,
       hint: (node, path) => this.hint(node, path),
       defaultOf: (path) => this.defaultOf(path),
+      askFile: this.askFile,
       convert: (path, kind) => (path === "camera" ? this.cameraOf(kind) : null),
     };
   }

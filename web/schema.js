@@ -63,9 +63,22 @@ export class Schema {
 
   /** The default of a field; an object without one of its own has its fields' defaults. */
   defaultOf(node) {
+    const member = this.sort(node) === "union" && this.members(node).get(node.default?.kind);
+    if (member) return { ...this.fresh(member), ...node.default };
     if (node.default !== undefined) return node.default;
     if (node.const !== undefined) return node.const;
+    if (this.sort(node) !== "object") return "";
     return Object.fromEntries(this.fields(node).map(([name, field]) => [name, this.defaultOf(field)]));
+  }
+
+  /** A text field that names an uploaded file. */
+  isAsset(node) {
+    return node.type === "string" && /asset:/.test(node.pattern ?? "");
+  }
+
+  /** Whether a union's member is nothing without a file that the person has yet to bring. */
+  needsFile(member) {
+    return this.fields(member).some(([, field]) => this.isAsset(field) && field.default === undefined);
   }
 
   /** The node at a dotted path of a document, through the union members that the document chose. */

@@ -30,8 +30,7 @@ export class Link extends EventTarget {
   connect() {
     const address = new URL("api/session", document.baseURI);
     address.protocol = address.protocol.replace("http", "ws");
-    address.hash = "";
-    address.search = location.search;
+    address.hash = address.search = "";
     const socket = new WebSocket(address);
     socket.binaryType = "arraybuffer";
     this.socket = socket;

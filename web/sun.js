@@ -2,7 +2,7 @@
 
 import { measureSun } from "./api.js";
 import { svg } from "./dom.js";
-import { radians, wrap } from "./vector.js";
+import { degrees, radians, wrap } from "./vector.js";
 
 const LOWEST = -18;
 const SIZE = 100;
@@ -24,9 +24,12 @@ export function clock(minutes) {
 /** The course of one day at one place, as the server computed it. */
 export class Day {
   constructor(answer) {
-    this.sunrise = minutesOf(answer.sunrise);
-    this.sunset = minutesOf(answer.sunset);
-    this.path = (answer.path ?? []).map((point) => ({ ...point, minutes: minutesOf(point.time) })).sort((a, b) => a.minutes - b.minutes);
+    const note = (word) => minutesOf(answer.meta.notes.find((text) => text.startsWith(word)));
+    this.sunrise = note("sunrise");
+    this.sunset = note("sunset");
+    this.path = answer.day_seconds.map((seconds, i) => ({
+      minutes: seconds / 60, azimuth: degrees(answer.day_azimuth_rad[i]), elevation: degrees(answer.day_elevation_rad[i]),
+    }));
   }
 
   /** Azimuth and elevation at a time of the day, between the server's points. */
@@ -58,11 +61,10 @@ export class Days {
   }
 
   async get(moment) {
-    const { latitude, longitude, date, time_zone, altitude } = moment;
-    const place = { latitude, longitude, date, time_zone, altitude };
-    const body = JSON.stringify(place);
-    if (!this.known.has(body)) this.known.set(body, measureSun(place).then((answer) => new Day(answer)));
-    return this.known.get(body);
+    const noon = { ...moment, time: "12:00:00" };
+    const key = JSON.stringify(noon);
+    if (!this.known.has(key)) this.known.set(key, measureSun(noon).then((answer) => new Day(answer)));
+    return this.known.get(key);
   }
 }
 

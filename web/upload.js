@@ -5,19 +5,22 @@ import { el } from "./dom.js";
 import { bytes } from "./overlay.js";
 import { humanise } from "./form.js";
 
-const REFERENCE = /asset:/;
-
-/** Where in the state an asset of `kind` may go: union members that hold a text field made for assets. */
+/** Where in the state a file of `kind` may go: `{path, title, patch(asset)}` for every text field made for such a file. */
 export function placesFor(schema, kind) {
   const found = [];
   for (const [name, node] of schema.fields(schema.root)) {
-    if (schema.sort(node) !== "union") continue;
-    for (const [member, fields] of schema.members(node)) {
-      for (const [field, inner] of schema.fields(fields)) {
-        const fits = REFERENCE.test(inner.pattern ?? "") || field === "asset";
-        const declared = inner.umbrage?.asset ?? name;
-        if (fits && (declared === kind || name === kind || member === kind)) found.push({ slot: name, member, field, title: node.title ?? humanise(name) });
+    const title = node.title ?? humanise(name);
+    const add = (field, patch) => {
+      if ([name, field].includes(kind)) found.push({ path: `${name}.${field}`, title, patch });
+    };
+    const sort = schema.sort(node);
+    for (const member of sort === "union" ? schema.members(node).values() : []) {
+      for (const [field, inner] of schema.fields(member)) {
+        if (schema.isAsset(inner)) add(field, (asset) => ({ [name]: { ...schema.fresh(member), [field]: asset } }));
       }
+    }
+    for (const [field, inner] of sort === "object" ? schema.fields(node) : []) {
+      if (schema.isAsset(inner)) add(field, (asset) => ({ [name]: { [field]: asset } }));
     }
   }
   return found;
@@ -60,22 +63,29 @@ export class Upload {
     }
   }
 
-  preview(file, { hash, kind, ...facts }) {
+  preview(file, { asset, kind, preview = {} }) {
     const places = placesFor(this.store.schema, kind);
-    const rows = Object.entries({ kind, size: bytes(file.size), ...facts }).filter(([, value]) => ["string", "number", "boolean"].includes(typeof value));
-    const use = places.map((place) => el("button", { type: "button", class: "wide", text: `Use as ${place.title.toLowerCase()}`,
-      on: { click: () => this.apply(place, hash) } }));
-    const none = places.length ? null : el("p", { text: `This scene has no place for a ${kind} file.` });
+    const rows = Object.entries({ kind, size: bytes(file.size), ...preview }).filter(([, value]) => value !== null && value !== "");
+    const use = places.map((place) => el("button", { type: "button", class: "wide", text: `Use for: ${place.title.toLowerCase()}`,
+      on: { click: () => this.apply(place, asset) } }));
+    const none = places.length ? null : el("p", { text: `This scene has no place for a file of this kind (${kind}).` });
     this.dialog.querySelector("h2").textContent = file.name;
     this.dialog.querySelector(".dialog-body").replaceChildren(
-      el("dl", { class: "costs" }, rows.flatMap(([name, value]) => [el("dt", { text: humanise(name) }), el("dd", { text: String(value) })])), ...use, ...(none ? [none] : []));
+      el("dl", { class: "costs" }, rows.flatMap(([name, value]) => [el("dt", { text: humanise(name) }), el("dd", { text: said(value) })])),
+      ...use, ...(none ? [none] : []));
     this.dialog.showModal();
   }
 
-  apply(place, hash) {
-    const { schema, document } = this.store;
-    const fresh = schema.fresh(schema.members(schema.at(place.slot, document)).get(place.member));
-    this.store.change({ [place.slot]: { ...fresh, [place.field]: `asset:${hash}` } }, "upload");
+  apply(place, asset) {
+    this.store.change(place.patch(asset), "upload");
     this.dialog.close();
   }
+}
+
+/** A fact of the preview in one line. */
+function said(value) {
+  if (Array.isArray(value)) return value.map(said).join(" × ");
+  if (typeof value === "number") return String(Number(value.toPrecision(6)));
+  if (value !== null && typeof value === "object") return Object.entries(value).map(([key, item]) => `${humanise(key)} ${said(item)}`).join(", ");
+  return String(value);
 }
