@@ -43,7 +43,7 @@ def lay(mask, area, normal, sums, corner, foot, axes, shifts, atlas_mask, atlas_
 
 @njit(cache=True, nogil=True)
 def extend(full, normal, anchor, axes):
-    """Give the air within two voxels of matter the mean normal and the nearest tree of that matter, in place.
+    """Give the air within two rows of voxels of matter the mean normal and the nearest tree of that matter, in place.
 
     Linear filtering mixes a surface's voxel with its empty neighbours: these must carry its normal, and point to its tree.
 
@@ -64,7 +64,8 @@ def extend(full, normal, anchor, axes):
                         for dj in range(-radius, radius + 1):
                             for di in range(-radius, radius + 1):
                                 row, column = (j + dj) % rows, (i + di) % columns
-                                if not full[k + dk, row, column]:
+                                # Two rows in each of the lattice's three directions: no farther across the diagonal either.
+                                if abs(di + dj) > 2 or not full[k + dk, row, column]:
                                     continue
                                 weight = 1.0 / (dk * dk + dj * dj + di * di)
                                 x += weight * normal[k + dk, row, column, 0]
