@@ -86,17 +86,23 @@ def without_comments(text: str) -> str:
     return _COMMENT.sub(lambda match: "\n" * match.group().count("\n") or " ", text)
 
 
+def _lines(text: str) -> list[str]:
+    """Lines as a GLSL compiler counts them; `str.splitlines` would also cut at form feeds and exotic separators."""
+    lines = text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
+    return lines if lines[-1] else lines[:-1]
+
+
 def _define(name: str, value: DefineValue) -> str:
     if not _NAME.match(name):
         raise UmbrageError(f"{name!r} is no name for a shader define")
     text = str(int(value)) if isinstance(value, bool) else repr(value) if isinstance(value, float) else str(value)
-    if "\n" in text or "\\" in text:
+    if {"\n", "\r", "\\"} & set(text):
         raise UmbrageError(f"the shader define {name} must be one line")
     return f"#define {name} {text}".rstrip()
 
 
 def _generated(part: str, text: str) -> list[Line]:
-    return [(line, part, number) for number, line in enumerate(text.splitlines(), start=1)]
+    return [(line, part, number) for number, line in enumerate(_lines(text), start=1)]
 
 
 def _expand(root: Path, file: str, done: set[str], trail: tuple[str, ...]) -> Iterator[Line]:
@@ -150,8 +156,7 @@ def _read(root: Path, file: str) -> tuple[tuple[str, ...], tuple[str, ...]]:
 def _parsed(path: Path, file: str, changed: int) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """Lines of a file, as written and without comments, checked against the rules; `changed` makes an edit seen."""
     text = path.read_text(encoding="utf-8")
-    raw = text.splitlines()
-    clean = without_comments("\n".join(raw)).split("\n") if raw else []
+    raw, clean = _lines(text), _lines(without_comments(text))
     for number, code in enumerate(clean, start=1):
         if _VERSION.match(code):
             raise ShaderError(file, number, "the #version is generated, a file may not state it")

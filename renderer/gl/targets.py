@@ -6,7 +6,7 @@ Textures drawn into have the bottom row first, as OpenGL counts; every array rea
 from __future__ import annotations
 
 import functools
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from typing import Any, Literal
 
