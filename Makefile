@@ -1,0 +1,45 @@
+# Two commands on a fresh machine: `make run` and `make test`. Each does all the set-up it needs.
+
+.PHONY: help run test lint bench study screenshots lock setup setup-test
+.DEFAULT_GOAL := help
+
+PYTHON ?=
+export PYTHON
+BIN := .venv/bin
+LOCK := --universal --python-version 3.11 --fork-strategy fewest --generate-hashes \
+        --no-header --no-annotate --no-emit-index-url --no-emit-find-links --quiet
+
+help: ## Say what each command does
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "make %-12s %s\n", $$1, $$2}' Makefile
+
+run: setup ## Serve the viewer and print its address (ARGS="--port 9000" and the like go to it)
+	$(BIN)/umbrage serve $(ARGS)
+
+test: lint ## Lint, types and tests
+	$(BIN)/python -m pytest $(ARGS)
+
+lint: setup-test ## Lint and types
+	$(BIN)/ruff check .
+	$(BIN)/mypy
+
+bench: setup ## Frame times per technique and preset, in milliseconds and yardsticks
+	$(BIN)/umbrage bench $(ARGS)
+
+study: setup ## Error of every combination of techniques against the reference, with charts
+	$(BIN)/umbrage study forest $(ARGS)
+
+screenshots: setup-test ## The pictures in docs/, taken anew
+	$(BIN)/umbrage screenshots $(ARGS)
+
+lock: setup ## Resolve the dependencies anew and write the lock files
+	$(BIN)/python -m venv out/lock
+	out/lock/bin/pip install --quiet uv
+	out/lock/bin/uv pip compile pyproject.toml --extra build $(LOCK) $(ARGS) -o docker/requirements.lock
+	out/lock/bin/uv pip compile pyproject.toml --extra build --extra test -c docker/requirements.lock $(LOCK) $(ARGS) \
+		-o docker/requirements-test.lock
+
+setup:
+	@docker/setup.sh run
+
+setup-test:
+	@docker/setup.sh test
