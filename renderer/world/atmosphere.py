@@ -57,8 +57,8 @@ DEPTH_SHAPE = (64, 256)
 GLOW_HEIGHTS, GLOW_SUNS = 24, 49
 """Heights and sun cosines of the table of multiply scattered light."""
 
-GLOW_LOWEST = -0.22
-"""Lowest cosine of the sun's zenith angle in that table: from there on the Earth's shadow is higher than the air."""
+GLOW_LOWEST = -0.35
+"""Lowest cosine of the sun's zenith angle in that table: all air that air at the top can see is dark there."""
 
 
 class Atmosphere(Model):
@@ -70,11 +70,11 @@ class Atmosphere(Model):
     haze: float = param(
         1.0,
         label="Haze",
-        help="Amount of haze, as a multiple of a clear day's.",
+        help="Amount of haze, as a multiple of that of very clear air (optical depth 0.0053); 20 is a common day.",
         unit="ratio",
         cost="bake",
         ge=0,
-        le=10,
+        le=100,
     )
     ground_albedo: float = param(
         0.15,
