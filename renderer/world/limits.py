@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
+from renderer.core.errors import AssetError, LimitError
 from renderer.core.params import Model, param
 
 
@@ -54,3 +57,23 @@ class Limits(Model):
 
 
 DEFAULT_LIMITS = Limits()
+
+
+def check_file(path: Path, limits: Limits) -> bytes:
+    """The first 64 bytes of a file that exists and is not too large.
+
+    Raises:
+        AssetError: `file` is missing or empty.
+        LimitError: `file` is larger than `limits.file_bytes`.
+    """
+    try:
+        size = path.stat().st_size
+        with path.open("rb") as stream:
+            head = stream.read(64)
+    except OSError as failure:
+        raise AssetError("file", "cannot be opened") from failure
+    if size == 0:
+        raise AssetError("file", "is empty")
+    if size > limits.file_bytes:
+        raise LimitError("file", f"has {size:,} bytes", f"at most {limits.file_bytes:,} bytes")
+    return head

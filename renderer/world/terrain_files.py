@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 from PIL import Image
 
-from renderer.core.errors import AssetError, LimitError
+from renderer.core.errors import AssetError
 from renderer.world.arrays import npz_names, read_npz
-from renderer.world.limits import Limits
+from renderer.world.limits import Limits, check_file
 from renderer.world.terrain_geotiff import read_geotiff
 from renderer.world.terrain_grid import Terrain, TerrainReading, check_shape
 
@@ -25,26 +25,6 @@ def terrain_format(head: bytes) -> str | None:
     if head[:8] == b"\x89PNG\r\n\x1a\n":
         return "png"
     return "npz" if head[:4] == b"PK\x03\x04" else None
-
-
-def check_file(path: Path, limits: Limits) -> bytes:
-    """The first 64 bytes of a file that exists and is not too large.
-
-    Raises:
-        AssetError: `file` is missing or empty.
-        LimitError: `file` is larger than `limits.file_bytes`.
-    """
-    try:
-        size = path.stat().st_size
-        with path.open("rb") as stream:
-            head = stream.read(64)
-    except OSError as failure:
-        raise AssetError("file", "cannot be opened") from failure
-    if size == 0:
-        raise AssetError("file", "is empty")
-    if size > limits.file_bytes:
-        raise LimitError("file", f"has {size:,} bytes", f"at most {limits.file_bytes:,} bytes")
-    return head
 
 
 def read_raster(path: Path, limits: Limits, reading: TerrainReading) -> Terrain:

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 import tifffile
 
-from renderer.core.errors import AssetError
+from renderer.core.errors import AssetError, InputError
 from renderer.world.limits import Limits
 from renderer.world.terrain_crs import WEB_MERCATOR, Crs, metres_per_degree, place
 from renderer.world.terrain_grid import Terrain, TerrainReading, check_shape
@@ -77,7 +77,7 @@ def read_geotiff(path: Path, limits: Limits, reading: TerrainReading) -> Terrain
                 )
                 if code in page.tags
             }
-    except AssetError:
+    except InputError:
         raise
     except Exception as failure:  # tifffile and its codecs raise whatever a damaged file leads them to
         raise AssetError("file", "is a damaged or truncated TIFF") from failure

@@ -142,17 +142,22 @@ def test_a_filled_hole_stays_within_its_rim() -> None:
     assert 200 <= filled[missing].min() <= filled[missing].max() <= 300
 
 
-@pytest.mark.parametrize(("elevation", "cell", "field"), [
-    (np.zeros((1, 1)), (1.0, 1.0), "elevation"),
-    (np.zeros((1, 500)), (1.0, 1.0), "elevation"),
-    (np.zeros((3, 3, 3)), (1.0, 1.0), "elevation"),
-    (np.full((3, 3), np.inf), (1.0, 1.0), "elevation"),
-    (np.full((3, 3), 1e30), (1.0, 1.0), "elevation"),
-    (np.zeros((3, 3)), (0.0, 1.0), "cell_size"),
-    (np.zeros((3, 3)), (1.0, -1.0), "cell_size"),
-    (np.zeros((3, 3)), (1.0, math.nan), "cell_size"),
-])
-def test_what_is_no_terrain_is_refused_by_its_field(elevation: np.ndarray, cell: tuple[float, float], field: str) -> None:
+@pytest.mark.parametrize(
+    ("elevation", "cell", "field"),
+    [
+        (np.zeros((1, 1)), (1.0, 1.0), "elevation"),
+        (np.zeros((1, 500)), (1.0, 1.0), "elevation"),
+        (np.zeros((3, 3, 3)), (1.0, 1.0), "elevation"),
+        (np.full((3, 3), np.inf), (1.0, 1.0), "elevation"),
+        (np.full((3, 3), 1e30), (1.0, 1.0), "elevation"),
+        (np.zeros((3, 3)), (0.0, 1.0), "cell_size"),
+        (np.zeros((3, 3)), (1.0, -1.0), "cell_size"),
+        (np.zeros((3, 3)), (1.0, math.nan), "cell_size"),
+    ],
+)
+def test_no_terrain_is_refused_by_its_field(
+    elevation: np.ndarray, cell: tuple[float, float], field: str
+) -> None:
     with pytest.raises(AssetError) as refusal:
         checked(Terrain(elevation.astype(np.float32), cell))
     assert refusal.value.field == field
@@ -165,7 +170,7 @@ def test_too_many_nodes_are_refused_before_they_are_touched() -> None:
 
 
 def test_metres_of_a_degree() -> None:
-    """Published values: 111,319 m of longitude at the equator, 110,574 and 111,694 m of latitude at equator and pole."""
+    """Published: 111,319 m of longitude at the equator, 110,574 and 111,694 m of latitude at equator and pole."""
     assert metres_per_degree(0) == pytest.approx((111_319.491, 110_574.276), abs=0.01)
     assert metres_per_degree(89.99999)[1] == pytest.approx(111_693.98, abs=0.01)
     assert metres_per_degree(60)[0] == pytest.approx(55_800, abs=1)
@@ -182,7 +187,7 @@ def test_places_of_the_projections_known_here() -> None:
 
 
 def test_utm_northing_is_the_meridian_arc() -> None:
-    """On the central meridian the northing is 0.9996 times the arc from the equator, summed here by the trapezium rule."""
+    """On the central meridian the northing is 0.9996 times the arc from the equator, by the trapezium rule."""
     phi = np.linspace(0, 52, 20_001)
     metres = np.array([metres_per_degree(float(p))[1] for p in phi])
     arc = float(np.sum((metres[1:] + metres[:-1]) / 2 * np.diff(phi)))

@@ -1,0 +1,331 @@
+"""Meshes: all formats give the same metres and colours, nothing else is opened, and what is broken is named."""
+
+from __future__ import annotations
+
+import io
+import json
+import struct
+from pathlib import Path
+
+import numpy as np
+import pytest
+import trimesh
+from PIL import Image
+
+from renderer.core.errors import AssetError, LimitError
+from renderer.world.limits import Limits
+from renderer.world.mesh import DEFAULT_COLOUR, MeshReading, is_watertight, load_mesh
+from renderer.world.mesh_colour import linear
+
+FORMATS = ("glb", "obj", "ply", "stl", "off")
+
+
+def box() -> trimesh.Trimesh:
+    """A box 1 x 2 x 3 m, its lowest corner at (10, 20, 30)."""
+    return trimesh.creation.box(
+        extents=(1, 2, 3), transform=trimesh.transformations.translation_matrix((10.5, 21, 31.5))
+    )
+
+
+def written(mesh: trimesh.Trimesh | trimesh.Scene, kind: str, folder: Path) -> Path:
+    path = folder / f"mesh.{kind}"
+    mesh.export(path)
+    return path
+
+
+def quad_glb(
+    folder: Path,
+    *,
+    base: tuple[float, ...] = (1, 1, 1, 1),
+    picture: Image.Image | None = None,
+    image_uri: str = "",
+    double_sided: bool = False,
+    edit=None,
+) -> Path:
+    """A square in the file's xy plane made by hand, so that trimesh's writer is not its own referee."""
+    position = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], dtype="<f4").tobytes()
+    uv = np.array([[0, 1], [1, 1], [1, 0], [0, 0]], dtype="<f4").tobytes()
+    index = np.array([0, 1, 2, 0, 2, 3], dtype="<u2").tobytes()
+    stream = io.BytesIO()
+    if picture is not None:
+        picture.save(stream, "PNG")
+    parts = [position, uv, index, stream.getvalue()]
+    views, blob = [], b""
+    for part in parts:
+        views.append({"buffer": 0, "byteOffset": len(blob), "byteLength": len(part)})
+        blob += part + b"\0" * (-len(part) % 4)
+    material: dict = {"pbrMetallicRoughness": {"baseColorFactor": base}, "doubleSided": double_sided}
+    document: dict = {
+        "asset": {"version": "2.0"},
+        "scene": 0,
+        "scenes": [{"nodes": [0]}],
+        "nodes": [{"mesh": 0}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0, "TEXCOORD_0": 1}, "indices": 2, "material": 0}]}],
+        "accessors": [
+            {"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 0]},
+            {"bufferView": 1, "componentType": 5126, "count": 4, "type": "VEC2"},
+            {"bufferView": 2, "componentType": 5123, "count": 6, "type": "SCALAR"},
+        ],
+        "bufferViews": views[:3],
+        "buffers": [{"byteLength": len(blob)}],
+        "materials": [material],
+    }
+    if picture is not None or image_uri:
+        material["pbrMetallicRoughness"]["baseColorTexture"] = {"index": 0}
+        document["textures"] = [{"source": 0}]
+        document["images"] = [{"uri": image_uri} if image_uri else {"bufferView": 3, "mimeType": "image/png"}]
+        document["bufferViews"] = views
+    if edit is not None:
+        edit(document)
+    text = json.dumps(document).encode()
+    text += b" " * (-len(text) % 4)
+    path = folder / "quad.glb"
+    path.write_bytes(
+        struct.pack("<4sII", b"glTF", 2, 28 + len(text) + len(blob))
+        + struct.pack("<I4s", len(text), b"JSON")
+        + text
+        + struct.pack("<I4s", len(blob), b"BIN\0")
+        + blob
+    )
+    return path
+
+
+@pytest.mark.parametrize("kind", FORMATS)
+def test_every_format_gives_the_same_box(kind: str, tmp_path: Path) -> None:
+    mesh = load_mesh(written(box(), kind, tmp_path), reading=MeshReading(up="z"))
+    low, high = mesh.bounds
+    np.testing.assert_allclose(low, (10, 20, 30), atol=1e-6)
+    np.testing.assert_allclose(high, (11, 22, 33), atol=1e-6)
+    assert mesh.faces.shape == (12, 3)
+    assert mesh.watertight
+    assert not mesh.two_sided
+    outward = np.einsum("fk,fk->f", mesh.face_normals(), mesh.vertices[mesh.faces].mean(axis=1) - (10.5, 21, 31.5))
+    assert outward.min() > 0
+
+
+def test_gltf_is_y_up_and_others_z_up(tmp_path: Path) -> None:
+    low, high = load_mesh(quad_glb(tmp_path)).bounds
+    np.testing.assert_allclose((low, high), ((0, 0, 0), (1, 0, 1)), atol=1e-7)
+    np.testing.assert_allclose(load_mesh(written(box(), "obj", tmp_path)).bounds[1], (11, 22, 33), atol=1e-6)
+    turned = load_mesh(written(box(), "obj", tmp_path), reading=MeshReading(up="y", unit_length=0.5))
+    np.testing.assert_allclose(turned.bounds[1], (5.5, -15, 11), atol=1e-6)
+    assert (
+        np.einsum("fk,fk->f", turned.face_normals(), turned.vertices[turned.faces].mean(axis=1) - (5.25, -15.75, 10.5))
+        > 0
+    ).all()
+
+
+def test_linear_is_the_srgb_curve() -> None:
+    """Two published points: code 188 is half the light, and the straight part meets the curve."""
+    assert linear(np.array([188 / 255]))[0] == pytest.approx(0.5029, abs=1e-4)
+    assert linear(np.array([0.04045]))[0] == pytest.approx(linear(np.array([0.040451]))[0], rel=1e-4)
+
+
+def test_painted_vertices_and_faces_become_linear_face_colours(tmp_path: Path) -> None:
+    painted = box()
+    painted.visual.vertex_colors = np.tile(np.array([188, 0, 255, 255], dtype=np.uint8), (8, 1))
+    mesh = load_mesh(written(painted, "ply", tmp_path))
+    np.testing.assert_allclose(mesh.face_colour, np.tile(linear(np.array([188, 0, 255]) / 255), (12, 1)))
+    painted = box()
+    painted.visual.face_colors = np.array([[20 * k, 0, 0, 255] for k in range(12)], dtype=np.uint8)
+    mesh = load_mesh(written(painted, "ply", tmp_path))
+    np.testing.assert_allclose(mesh.face_colour[:, 0], linear(20 * np.arange(12) / 255))
+
+
+def test_a_mesh_without_colours_is_grey(tmp_path: Path) -> None:
+    np.testing.assert_array_equal(
+        load_mesh(written(box(), "off", tmp_path)).face_colour, np.tile(DEFAULT_COLOUR, (12, 1))
+    )
+
+
+def test_gltf_factors_are_linear_and_exact(tmp_path: Path) -> None:
+    """A spruce needle's 0.035 must not be rounded to 8 bits (0.0353), nor passed through the sRGB curve (0.0027)."""
+    mesh = load_mesh(quad_glb(tmp_path, base=(0.03, 0.07, 0.035, 1)))
+    np.testing.assert_allclose(mesh.face_colour, np.tile((0.03, 0.07, 0.035), (2, 1)), rtol=1e-12)
+    assert mesh.two_sided  # open
+
+
+def test_a_texture_is_averaged_in_linear_light_under_each_face(tmp_path: Path) -> None:
+    """Left half black, right half white, faces split along the diagonal: shares 3/4 and 1/4 of white."""
+    picture = Image.new("RGB", (256, 256))
+    picture.paste((255, 255, 255), (128, 0, 256, 256))
+    mesh = load_mesh(quad_glb(tmp_path, base=(1, 0.5, 0, 1), picture=picture))
+    # 16 samples a face resolve a share to 1/16. Black and white hide the curve, so the last lines use a grey.
+    np.testing.assert_allclose(mesh.face_colour[:, 0], (0.75, 0.25), atol=1 / 16)
+    np.testing.assert_allclose(mesh.face_colour[:, 1], 0.5 * mesh.face_colour[:, 0])
+    assert (mesh.face_colour[:, 2] == 0).all()
+    grey = load_mesh(quad_glb(tmp_path, picture=Image.new("RGB", (4, 4), (188, 188, 188))))
+    np.testing.assert_allclose(grey.face_colour, linear(np.array([188 / 255]))[0], rtol=1e-5)
+
+
+def test_texture_rows_run_from_the_top(tmp_path: Path) -> None:
+    """The first face is the lower right half of the quad; a flipped v would give it the upper row's colour."""
+    picture = Image.new("RGB", (2, 2), (255, 0, 0))
+    picture.paste((0, 255, 0), (0, 1, 2, 2))
+    mesh = load_mesh(quad_glb(tmp_path, picture=picture.resize((64, 64), Image.Resampling.NEAREST)))
+    assert mesh.face_colour[0, 1] == pytest.approx(0.75, abs=0.1)
+    assert mesh.face_colour[1, 0] == pytest.approx(0.75, abs=0.1)
+
+
+def test_a_transparent_texture_is_said(tmp_path: Path) -> None:
+    mesh = load_mesh(quad_glb(tmp_path, picture=Image.new("RGBA", (4, 4), (255, 255, 255, 0))))
+    assert any("transparency" in note for note in mesh.notes)
+
+
+def test_flat_texture_coordinates_are_said_and_broken_ones_refused(tmp_path: Path) -> None:
+    broken = quad_glb(tmp_path, picture=Image.new("RGB", (4, 4)))
+    data = broken.read_bytes()
+    good = np.array([[0, 1], [1, 1], [1, 0], [0, 0]], dtype="<f4").tobytes()
+    broken.write_bytes(data.replace(good, np.full(8, np.nan, dtype="<f4").tobytes()))
+    with pytest.raises(AssetError) as refusal:
+        load_mesh(broken)
+    assert refusal.value.field == "uv"
+    broken.write_bytes(data.replace(good, np.zeros(8, dtype="<f4").tobytes()))
+    assert any("2 faces have texture coordinates without area" in note for note in load_mesh(broken).notes)
+
+
+def test_instances_are_placed_and_mirrored_ones_keep_their_outside(tmp_path: Path) -> None:
+    scene = trimesh.Scene()
+    unit = trimesh.creation.box(extents=(1, 1, 1))
+    scene.add_geometry(unit, node_name="a", geom_name="g")
+    mirror = np.diag([-1.0, 1, 1, 1])
+    mirror[0, 3] = 5
+    scene.graph.update(frame_to="b", matrix=mirror, geometry="g")
+    mesh = load_mesh(written(scene, "glb", tmp_path), reading=MeshReading(up="z"))
+    assert len(mesh.faces) == 24
+    np.testing.assert_allclose(mesh.bounds, ((-0.5, -0.5, -0.5), (5.5, 0.5, 0.5)), atol=1e-6)
+    centres = np.where(mesh.vertices[mesh.faces].mean(axis=1)[:, :1] > 2.5, (5.0, 0, 0), (0.0, 0, 0))
+    assert np.einsum("fk,fk->f", mesh.face_normals(), mesh.vertices[mesh.faces].mean(axis=1) - centres).min() > 0
+    assert mesh.watertight
+
+
+def test_instances_count_against_the_limit(tmp_path: Path) -> None:
+    def crowd(document: dict) -> None:
+        document["nodes"] = [{"mesh": 0} for _ in range(600)]
+        document["scenes"][0]["nodes"] = list(range(600))
+
+    with pytest.raises(LimitError, match=r"faces.*1,200"):
+        load_mesh(quad_glb(tmp_path, edit=crowd), Limits(faces=1000))
+
+
+def test_nothing_outside_the_file_is_opened(tmp_path: Path) -> None:
+    """The neighbours exist and would change the colours, were they read."""
+    (tmp_path / "red.mtl").write_text("newmtl red\nKd 1 0 0\n")
+    obj = tmp_path / "box.obj"
+    obj.write_text("mtllib red.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\n")
+    mesh = load_mesh(obj)
+    np.testing.assert_array_equal(mesh.face_colour, [DEFAULT_COLOUR])
+    assert mesh.notes == ("red.mtl is another file and was not read",)
+    Image.new("RGB", (2, 2), (255, 0, 0)).save(tmp_path / "red.png")
+    textured = load_mesh(quad_glb(tmp_path, image_uri="red.png"))
+    np.testing.assert_allclose(textured.face_colour, 1)
+    assert any("red.png is another file" in note for note in textured.notes)
+    with pytest.raises(AssetError, match="file: keeps its geometry in another file"):
+        load_mesh(quad_glb(tmp_path, edit=lambda d: d["buffers"][0].update(uri="../../etc/passwd")))
+
+
+def test_vertex_normals_come_from_the_file_or_not_at_all(tmp_path: Path) -> None:
+    assert load_mesh(written(box(), "off", tmp_path)).vertex_normals is None
+    ball = trimesh.creation.icosphere(subdivisions=2)
+    path = tmp_path / "ball.ply"
+    path.write_bytes(trimesh.exchange.ply.export_ply(ball, vertex_normal=True))
+    normals = load_mesh(path, reading=MeshReading(unit_length=3.0)).vertex_normals
+    np.testing.assert_allclose(np.linalg.norm(normals, axis=1), 1)
+    np.testing.assert_allclose(normals, load_mesh(path).vertices, atol=0.05)
+
+
+def test_watertight_needs_agreement_on_the_outside() -> None:
+    solid = box()
+    assert is_watertight(solid.vertices, solid.faces)
+    assert not is_watertight(solid.vertices, solid.faces[1:])
+    flipped = solid.faces.copy()
+    flipped[0] = flipped[0, ::-1]
+    assert not is_watertight(solid.vertices, flipped)
+    soup = solid.vertices[solid.faces].reshape(-1, 3)
+    assert is_watertight(soup, np.arange(len(soup)).reshape(-1, 3))
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "field"),
+    [
+        ("no_faces.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\n", "faces"),
+        ("no_faces.off", b"OFF\n3 0 0\n0 0 0\n1 0 0\n0 1 0\n", "faces"),
+        ("no_faces.stl", b"solid nothing\nendsolid nothing\n", "faces"),
+        (
+            "no_faces.ply",
+            b"ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n"
+            b"element face 0\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n",
+            "faces",
+        ),
+        ("binary.stl", b"\0" * 84, "faces"),
+        ("flat.obj", b"v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n", "faces"),
+        ("nan.obj", b"v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", ""),
+        ("nan.off", b"OFF\n3 1 0\nnan 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", "vertices"),
+        ("inf.off", b"OFF\n3 1 0\ninf 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", "vertices"),
+        ("far.off", b"OFF\n3 1 0\n1e30 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", "vertices"),
+        ("index.off", b"OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 7\n", "file"),
+        ("index.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n", "file"),
+        ("short.off", b"OFF\n3 2 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", "faces"),
+        ("text.obj", b"hello, I am a letter\n", "file"),
+        ("empty.obj", b"", "file"),
+        ("old.glb", struct.pack("<4sIIII", b"glTF", 1, 20, 0, 0x4E4F534A), "file"),
+    ],
+)
+def test_what_is_no_mesh_is_refused_by_its_field(name: str, text: bytes, field: str, tmp_path: Path) -> None:
+    path = tmp_path / name
+    path.write_bytes(text)
+    with pytest.raises(AssetError) as refusal:
+        load_mesh(path)
+    assert field in ("", refusal.value.field)
+
+
+def test_headers_that_claim_too_much_are_refused_before_anything_is_held(tmp_path: Path) -> None:
+    cases = {
+        "vast.ply": b"ply\nformat binary_little_endian 1.0\nelement vertex 178956970\nproperty float x\nproperty float y\n"
+        b"property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n",
+        "vast.off": b"OFF\n178956970 1 0\n",
+    }
+    for name, data in cases.items():
+        (tmp_path / name).write_bytes(data)
+        with pytest.raises(LimitError, match=r"vertices.*178,956,970"):
+            load_mesh(tmp_path / name)
+
+    def vast(document: dict) -> None:
+        document["accessors"].append({"componentType": 5126, "count": 178_956_970, "type": "VEC3"})
+
+    with pytest.raises(LimitError, match="vertices"):
+        load_mesh(quad_glb(tmp_path, edit=vast))
+    with pytest.raises(AssetError, match="KHR_draco_mesh_compression"):
+        load_mesh(quad_glb(tmp_path, edit=lambda d: d.update(extensionsRequired=["KHR_draco_mesh_compression"])))
+
+
+def test_a_vast_texture_is_refused_before_it_is_decoded(tmp_path: Path) -> None:
+    with pytest.raises(LimitError, match=r"texture.*3,000 x 3,000"):
+        load_mesh(quad_glb(tmp_path, picture=Image.new("1", (3000, 3000))), Limits(texture_pixels=1_000_000))
+
+
+@pytest.mark.parametrize("kind", FORMATS)
+def test_a_truncated_mesh_is_refused_and_never_half_a_mesh(kind: str, tmp_path: Path) -> None:
+    """OBJ has no counts and no end: a cut there may leave a smaller valid mesh, so it need only not break."""
+    data = written(box(), kind, tmp_path).read_bytes()
+    path = tmp_path / f"cut.{kind}"
+    for tenth in range(10):
+        path.write_bytes(data[: len(data) * tenth // 10])
+        if kind == "obj":
+            try:
+                assert len(load_mesh(path).faces) <= 12
+            except AssetError:
+                continue
+        else:
+            with pytest.raises(AssetError):
+                load_mesh(path)
+
+
+def test_random_bytes_behind_every_mark_give_words(tmp_path: Path) -> None:
+    rng = np.random.Generator(np.random.PCG64(200))
+    for mark in (b"", b"glTF", b"ply\n", b"OFF ", b"solid facet", b'{"asset":{"version":"2.0"}', b"v 0 0 0\nf "):
+        for _ in range(6):
+            path = tmp_path / "noise.stl"
+            path.write_bytes(mark + rng.bytes(200))
+            with pytest.raises(AssetError):
+                load_mesh(path)
