@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -10,7 +11,9 @@ import pytest
 
 from renderer.core.errors import InvalidDocument, LimitError
 from renderer.core.params import validate
-from renderer.world.camera import RETREAT, Look, Orbit, Orthographic, camera_uniforms, pose, rays
+from renderer.gl.probe import probe
+from renderer.gl.thread import GLThread
+from renderer.world.camera import CAMERA_DECLARATIONS, RETREAT, Look, Orbit, Orthographic, camera_uniforms, pose, rays
 from renderer.world.state import SceneState
 
 CAMERAS = [
@@ -92,6 +95,45 @@ def test_uniforms_give_the_rays_in_float32(camera: Any) -> None:
     origins, directions = rays(camera, 33, 17, offset=(0.25, 0.75))
     np.testing.assert_allclose(direction / np.linalg.norm(direction), directions[3, 20], atol=1e-6)
     np.testing.assert_allclose(origin, origins[3, 20], rtol=1e-5)
+
+
+@pytest.fixture(scope="module")
+def gl() -> Iterator[GLThread]:
+    """A context of this module's own."""
+    with GLThread() as thread:
+        yield thread
+
+
+@pytest.mark.parametrize("camera", CAMERAS, ids=lambda c: c.kind)
+def test_glsl_agrees_with_the_twin(camera: Any, gl: GLThread) -> None:
+    """Every ray to 1e-6 of a radian and of its origin's size; the same measure rejects a picture turned over."""
+    width, height = 9, 7
+    x, y = np.meshgrid(np.arange(width) + 0.5, np.arange(height) + 0.5)
+    body = "vec3 o, d; camera_ray(pixel, o, d); result = float[6](o.x, o.y, o.z, d.x, d.y, d.z);"
+
+    def run(rows: np.ndarray) -> np.ndarray:
+        pixels = np.stack([x.ravel(), rows.ravel()], axis=1).astype(np.float32)
+        uniforms = camera_uniforms(camera, width, height)
+        return np.asarray(
+            gl.call(
+                lambda on: probe(
+                    on,
+                    ["lib/camera.glsl"],
+                    body,
+                    {"pixel": pixels},
+                    6,
+                    declarations=CAMERA_DECLARATIONS,
+                    uniforms=uniforms,
+                )
+            )
+        )
+
+    origins, directions = (a.reshape(-1, 3) for a in rays(camera, width, height))
+    found = run(y)
+    np.testing.assert_allclose(found[:, :3], origins, atol=1e-6 * np.abs(origins).max())
+    np.testing.assert_allclose(found[:, 3:], directions, atol=1e-6)
+    turned = run(height - y)
+    assert max(np.abs(turned[:, :3] - origins).max(), np.abs(turned[:, 3:] - directions).max()) > 0.1
 
 
 @pytest.mark.parametrize(
