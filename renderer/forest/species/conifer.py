@@ -25,7 +25,7 @@ def grow(rng: np.random.Generator, height: float, crown_radius: float) -> Tree:
     azimuth = np.arange(len(foot)) * (2 * np.pi / 6) + np.repeat(np.arange(len(whorls)), 6) * GOLDEN_ANGLE + rng.normal(0, 0.16, len(foot))
     rise = np.clip((foot - bottom) / (height - bottom), 0, 1)
     # A cone that bulges a little, with the lowest branches shaded out and short.
-    profile = (1 - rise) ** 0.82 * np.clip(0.62 + 3.2 * rise, 0, 1)
+    profile = (1 - rise) ** 0.78 * np.clip(0.62 + 3.2 * rise, 0, 1)
     length = np.maximum(crown_radius * profile * rng.uniform(0.74, 1.04, len(foot)), 0.12)
     axis = _branch_axes(stem, height, foot, azimuth, length, rise)
     branches = tubes(axis, 0.012 + 0.012 * length[:, None] * (1 - np.linspace(0, 0.95, axis.shape[1])), 3)
@@ -47,7 +47,7 @@ def _branch_axes(stem: np.ndarray, height: float, foot: np.ndarray, azimuth: np.
 
 def _sprays(rng: np.random.Generator, axis: np.ndarray, length: np.ndarray, height: float) -> tuple[np.ndarray, np.ndarray]:
     """Needled twigs as narrow leaves to both sides of the branches, hanging, denser on long branches."""
-    count = np.maximum((length * 11).astype(int), 4)
+    count = np.maximum((length * 9).astype(int), 4)
     branch = np.repeat(np.arange(len(length)), count)
     place = rng.uniform(0.12, 1.0, len(branch)) ** 0.8
     spot = place * (axis.shape[1] - 1)
@@ -73,4 +73,4 @@ def _leader(rng: np.random.Generator, stem: np.ndarray) -> tuple[np.ndarray, np.
     return leaves(base, along, outwards(base, tip - [0, 0, 1.5], rng, up=0.4, disorder=0.2), 0.12)
 
 
-SPECIES = Species("conifer", "Spruce", "Whorled monopodial form: Hallé, Oldeman & Tomlinson 1978, Massart's model", (16.0, 19.2), 0.135, grow)
+SPECIES = Species("conifer", "Spruce", "Whorled monopodial form: Hallé, Oldeman & Tomlinson 1978, Massart's model", (16.0, 19.2), 0.155, grow)
