@@ -81,7 +81,8 @@ def test_a_linker_error_says_so(thread: GLThread) -> None:
 def test_every_driver_s_way_of_naming_a_line_is_understood(message: str) -> None:
     stages = {"vertex_shader": Source("\n" * 9, tuple(("v.vert", n) for n in range(1, 10))),
               "fragment_shader": Source("\n" * 9, tuple(("a.glsl", 100 + n) for n in range(1, 10)))}
-    words = f"GLSL Compiler failed\n\nfragment_shader\n===============\n0:2(1): warning: unused\n{message}\n0:7(1): error: more\n"
+    words = "GLSL Compiler failed\n\nfragment_shader\n===============\n" \
+            f"0:2(1): warning: unused\n{message}\n0:7(1): error: more\n"
     error = shader_error(words, stages)
     assert (error.file, error.line) == ("a.glsl", 104)
     assert "x" in error.message
@@ -145,7 +146,8 @@ def test_a_value_of_the_wrong_size_is_named(thread: GLThread) -> None:
 
 
 def test_unused_uniforms_are_skipped_and_listed(thread: GLThread) -> None:
-    text = "uniform float used; // uniform float commented;\nuniform vec3 idle, idler[3];\nuniform highp sampler2D image;"
+    text = "uniform float used; // uniform float commented;\nuniform vec3 idle, idler[3];\n" \
+           "uniform highp sampler2D image;"
     source = fragment("vec4(used)", text)
     program = thread.call(lambda gl: gl.programs.get(VERTEX, source))
     assert declared(text) == ["used", "idle", "idler", "image"]

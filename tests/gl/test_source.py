@@ -90,7 +90,8 @@ def test_a_file_of_functions_keeps_to_functions(tmp_path: Path, text: str, line:
 
 
 def test_comments_may_speak_of_what_is_forbidden(tmp_path: Path) -> None:
-    text = '// void main() with a uniform\n/* #version 330\n#include "none.glsl"\nuniform */\n//#include "none.glsl"\nfloat f;'
+    text = '// void main() with a uniform\n/* #version 330\n#include "none.glsl"\nuniform */\n' \
+           '//#include "none.glsl"\nfloat f;'
     source = assemble(["a.glsl"], root=write(tmp_path, {"a.glsl": text}))
     assert source.text.endswith("float f;\n")
     assert '#include "' not in source.text, "moderngl would look for it"
@@ -123,7 +124,8 @@ def test_an_include_under_a_condition_is_refused(tmp_path: Path) -> None:
     assert "float x;" in assemble(["b.glsl"], root=root).text
 
 
-@pytest.mark.parametrize("line", ["#include <x.glsl>", "#include x.glsl", '#include "x.glsl', "#include", "#include \"\""])
+@pytest.mark.parametrize("line", ["#include <x.glsl>", "#include x.glsl", '#include "x.glsl', "#include",
+                                  '#include ""'])
 def test_a_malformed_include_is_an_error_not_a_silence(tmp_path: Path, line: str) -> None:
     root = write(tmp_path, {"x.glsl": "float x;\n", "a.glsl": line + "\n"})
     with pytest.raises(ShaderError, match="an include reads"):

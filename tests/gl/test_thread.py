@@ -145,7 +145,8 @@ def test_a_job_finds_the_switches_off_whatever_the_one_before_did(thread: GLThre
         gl.ctx.enable(moderngl.BLEND | moderngl.DEPTH_TEST | moderngl.CULL_FACE)
         gl.ctx.blend_func = moderngl.ONE, moderngl.ONE
     thread.call(leave_on)
-    source = "#version 330\nvoid main() { gl_Position = vec4(vec2(gl_VertexID % 2, gl_VertexID / 2) * 4.0 - 1.0, 0, 1); }"
+    source = "#version 330\nvoid main() {" \
+             "gl_Position = vec4(vec2(gl_VertexID % 2, gl_VertexID / 2) * 4.0 - 1.0, 0, 1); }"
     fill = "#version 330\nout vec4 o; void main() { o = vec4(0.25); }"
 
     def draw_twice(gl: GL) -> bytes:
@@ -209,7 +210,8 @@ def test_an_owner_is_released_before_the_context() -> None:
 
 def test_a_leak_is_reported_by_type_and_the_thread_still_ends() -> None:
     running = GLThread("gl-leaking")
-    running.call(lambda gl: [gl.ctx.buffer(reserve=4), gl.ctx.texture((2, 2), 4)] and None)
+    running.call(lambda gl: gl.ctx.buffer(reserve=4).size)
+    running.call(lambda gl: gl.ctx.texture((2, 2), 4).size)
     with pytest.raises(GLLeak, match="1 Buffer, 1 Texture"):
         running.close()
     assert running.live_objects() == 2
