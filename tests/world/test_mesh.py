@@ -281,8 +281,8 @@ def test_what_is_no_mesh_is_refused_by_its_field(name: str, text: bytes, field: 
 
 def test_headers_that_claim_too_much_are_refused_before_anything_is_held(tmp_path: Path) -> None:
     cases = {
-        "vast.ply": b"ply\nformat binary_little_endian 1.0\nelement vertex 178956970\nproperty float x\nproperty float y\n"
-        b"property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n",
+        "vast.ply": b"ply\nformat binary_little_endian 1.0\nelement vertex 178956970\nproperty float x\n"
+        b"property float y\nproperty float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n",
         "vast.off": b"OFF\n178956970 1 0\n",
     }
     for name, data in cases.items():
