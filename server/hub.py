@@ -1,0 +1,95 @@
+"""What all requests of one server share."""
+
+from __future__ import annotations
+
+import asyncio
+import functools
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from typing import Annotated, Any, TypeVar
+
+from fastapi import Depends, FastAPI
+from starlette.requests import HTTPConnection
+
+from renderer.core.errors import LimitError
+from server.facade import RenderSession
+from server.jobs import Jobs
+from server.metrics import Metrics
+from server.problems import Busy
+from server.settings import Settings
+
+T = TypeVar("T")
+
+
+class Hub:
+    """The session, the settings and the threads of one server.
+
+    Encoding, short calls of the session and long renders have threads of their own: none waits behind another kind.
+    """
+
+    def __init__(self, session: RenderSession, settings: Settings) -> None:
+        self.session = session
+        self.settings = settings
+        self.metrics = Metrics()
+        self.encoders = ThreadPoolExecutor(2, "encode")
+        self.callers = ThreadPoolExecutor(8, "call")
+        self.renderers = ThreadPoolExecutor(2, "render")
+        self.jobs = Jobs(settings, self.metrics)
+        self.streams: set[Any] = set()
+        self.renders_waiting = 0
+        self.thumbnails: dict[str, bytes] = {}
+        self.thumbnail_locks: dict[str, asyncio.Lock] = {}
+
+    async def call(self, function: Callable[..., T], *arguments: Any, **named: Any) -> T:
+        """Run a short blocking function off the event loop."""
+        return await asyncio.get_running_loop().run_in_executor(
+            self.callers, functools.partial(function, *arguments, **named)
+        )
+
+    def check_size(self, width: int, height: int, pixels: int | None = None) -> None:
+        """Refuse a picture that is too large.
+
+        Raises:
+            LimitError: naming the side, or both, and the limit.
+        """
+        side = self.settings.max_side
+        limit = self.settings.max_pixels if pixels is None else pixels
+        for field, value in (("width", width), ("height", height)):
+            if not 1 <= value <= side:
+                raise LimitError(field, f"{value} px is no size this server draws", f"1 to {side} px")
+        if width * height > limit:
+            raise LimitError("width", f"{width} x {height} pixels are too many", f"width x height at most {limit}")
+
+    def enter_render(self) -> None:
+        """Count one more picture asked over HTTP.
+
+        Raises:
+            Busy: as many wait as may.
+        """
+        if self.renders_waiting >= self.settings.renders:
+            raise Busy("", "too many pictures are waiting to be drawn", f"{self.settings.renders} at once")
+        self.renders_waiting += 1
+
+    def leave_render(self) -> None:
+        """The picture was drawn, or is no longer wanted."""
+        self.renders_waiting -= 1
+
+    async def close(self) -> None:
+        """Cancel what runs and join every thread."""
+        await self.jobs.close()
+        for pool in (self.encoders, self.callers, self.renderers):
+            await asyncio.to_thread(pool.shutdown, True, cancel_futures=True)
+
+
+def hub_of(connection: HTTPConnection) -> Hub:
+    """The hub of the server that a request reached."""
+    found: Hub = connection.app.state.hub
+    return found
+
+
+def install(app: FastAPI, hub: Hub) -> None:
+    """Make `hub` the one of `app`."""
+    app.state.hub = hub
+
+
+TheHub = Annotated[Hub, Depends(hub_of)]

@@ -1,0 +1,84 @@
+"""Pictures on request: prepared, drawn off the event loop, given up when the client leaves."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+from collections.abc import Awaitable
+from typing import Any, TypeVar
+
+from starlette.requests import Request
+
+from renderer.core.errors import Cancelled
+from server import facade
+from server.hub import Hub
+
+T = TypeVar("T")
+
+
+async def draw(hub: Hub, request: Request, state: Any, width: int, height: int) -> facade.Picture:
+    """Draw a state at its own quality.
+
+    Raises:
+        Busy: too many pictures wait.
+        Cancelled: the client left.
+    """
+    hub.check_size(width, height)
+    hub.enter_render()
+    left = asyncio.create_task(_left(request))
+    try:
+        preparation = await hub.call(hub.session.prepare, state)
+        try:
+            await _unless(left, asyncio.wrap_future(preparation.future))
+        except Cancelled:
+            preparation.cancel()
+            raise
+        stop = _Stop()
+        drawing = asyncio.get_running_loop().run_in_executor(
+            hub.renderers, hub.session.render, state, width, height, stop.check
+        )
+        try:
+            picture = await _unless(left, drawing)
+        except Cancelled:
+            stop.asked = True
+            raise
+        hub.metrics.pictures.inc()
+        return picture
+    finally:
+        left.cancel()
+        hub.leave_render()
+
+
+class _Stop:
+    """A progress callback that ends the work once it is no longer wanted."""
+
+    asked = False
+
+    def check(self, progress: Any) -> None:
+        if self.asked:
+            raise Cancelled("the client left")
+
+
+async def _left(request: Request) -> None:
+    """Return when the client closes its connection; the body was read before."""
+    while (await request.receive())["type"] != "http.disconnect":
+        pass
+
+
+async def _unless(left: asyncio.Task[None], work: Awaitable[T]) -> T:
+    """Wait for `work`; cancel it when the client leaves first.
+
+    Raises:
+        Cancelled: the client left.
+    """
+    doing = asyncio.ensure_future(work)
+    try:
+        await asyncio.wait({left, doing}, return_when=asyncio.FIRST_COMPLETED)
+    finally:
+        if not doing.done():
+            doing.cancel()
+    if doing.done() and not doing.cancelled():
+        return doing.result()
+    with contextlib.suppress(asyncio.CancelledError):
+        await doing
+    raise Cancelled("the client left before the picture was drawn")

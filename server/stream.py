@@ -1,0 +1,201 @@
+"""One live view over a WebSocket: reads messages and answers each.
+
+States of the connection: greeting (only hello is understood), open, closed. Nothing a client sends ends it but a hello
+of another protocol; everything else is answered by an error that names the field.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import secrets
+import time
+from collections.abc import Coroutine
+from typing import Any
+
+from fastapi import WebSocket, WebSocketDisconnect
+from pydantic import BaseModel
+from starlette.websockets import WebSocketDisconnected
+
+from renderer.core.errors import InputError, UmbrageError
+from server import protocol
+from server.hub import Hub
+from server.live import Live
+from server.pace import Allowance
+from server.painter import Painter
+from server.problems import said
+
+WRONG_PROTOCOL = 4400
+TOO_MANY = 1013
+GONE = (WebSocketDisconnect, WebSocketDisconnected, OSError)
+"""What sending to a client that left raises."""
+LIMITS = ("max_side", "max_pixels", "max_stream_pixels", "message_rate", "message_bytes", "upload_bytes", "sessions")
+
+
+class Stream:
+    """The state machine of one connection.
+
+    Args:
+        socket: accepted.
+        hub: the server's.
+    """
+
+    def __init__(self, socket: WebSocket, hub: Hub) -> None:
+        self.name = secrets.token_hex(4)
+        self._socket, self._hub = socket, hub
+        self._allowance = Allowance(hub.settings.message_rate, time.monotonic())
+        self._live: Live | None = None
+        self._tasks: set[asyncio.Task[None]] = set()
+
+    async def run(self) -> None:
+        """Serve until the client leaves."""
+        try:
+            while True:
+                event = await self._socket.receive()
+                if event["type"] == "websocket.disconnect":
+                    return
+                await self._receive(event)
+        except GONE:
+            return
+        finally:
+            for task in self._tasks:
+                task.cancel()
+            await asyncio.gather(*self._tasks, return_exceptions=True)
+            if self._live is not None:
+                await self._live.close()
+
+    async def _tell(self, message: BaseModel) -> None:
+        await self._socket.send_text(protocol.dump(message))
+
+    async def _refuse(self, failure: BaseException, number: int | None = None) -> None:
+        self._hub.metrics.refused.inc()
+        for entry in said(failure):
+            await self._tell(protocol.Refusal(**entry, id=number))
+
+    async def _receive(self, event: Any) -> None:
+        """Answer one message."""
+        number: int | None = None
+        try:
+            text = event.get("text")
+            if text is None:
+                raise InputError("", "binary messages are not understood", "JSON text")
+            message = protocol.parse(text)
+            number = getattr(message, "id", None)
+            # An acknowledgement costs nothing, and one that was dropped would stop the pictures.
+            if not isinstance(message, protocol.Ack) and not self._allowance.take(time.monotonic()):
+                await self._overrun()
+            elif isinstance(message, protocol.Ping):
+                await self._tell(protocol.Pong(id=message.id))
+            elif isinstance(message, protocol.Hello):
+                await self._hello(message)
+            elif self._live is None:
+                raise InputError("type", "the first message must be hello", "hello, ping")
+            else:
+                await self._dispatch(self._live, message)
+        except GONE:
+            raise
+        except Exception as failure:  # a message never ends a session; what is unexpected is logged
+            await self._refuse(failure, number)
+
+    async def _overrun(self) -> None:
+        self._hub.metrics.refused.inc()
+        if self._allowance.tell(time.monotonic()):
+            limit = f"at most {self._hub.settings.message_rate} a second"
+            await self._tell(protocol.Refusal(field="", message="too many messages; some were dropped", allowed=limit))
+        await asyncio.sleep(0)  # a full socket never makes receiving wait: others must have their turn
+
+    async def _dispatch(self, live: Live, message: BaseModel) -> None:
+        if isinstance(message, protocol.Patch):
+            await live.patch(message.patch, message.id)
+        elif isinstance(message, protocol.Replace):
+            await live.replace(message.state, message.id)
+        elif isinstance(message, protocol.Ack):
+            live.painter.acknowledge(message.sequence)
+        elif isinstance(message, protocol.Resize):
+            self._check_size(message.width, message.height)
+            live.painter.resize(message.width, message.height)
+        elif isinstance(message, protocol.Probe):
+            live.probe(message)
+        elif isinstance(message, protocol.Compare):
+            await live.compare(message.patch)
+        elif isinstance(message, protocol.Moving):
+            live.painter.hold(message.active)
+        elif isinstance(message, protocol.Cancel):
+            live.cancel()
+
+    def _check_size(self, width: int, height: int) -> None:
+        self._hub.check_size(width, height, self._hub.settings.max_stream_pixels)
+
+    async def _hello(self, message: protocol.Hello) -> None:
+        if self._live is not None:
+            raise InputError("type", "this session was opened already", "state, patch, resize")
+        if message.protocol != protocol.PROTOCOL:
+            words = f"this server speaks protocol {protocol.PROTOCOL}; reload the page"
+            await self._tell(protocol.Refusal(field="protocol", message=words, allowed=str(protocol.PROTOCOL)))
+            await self._socket.close(WRONG_PROTOCOL, words)
+            raise WebSocketDisconnect(WRONG_PROTOCOL)
+        self._check_size(message.width, message.height)
+        codecs: tuple[protocol.Codec, ...] = tuple(codec for codec in protocol.CODECS if codec in message.codecs)
+        if not codecs:
+            raise InputError("codecs", "none of these codecs is known", ", ".join(protocol.CODECS))
+        state = await self._first_state(message)
+        document = state.model_dump(mode="json")
+        info = self._hub.session.gl.info
+        await self._tell(
+            protocol.Welcome(
+                session=self.name,
+                version=1,
+                state=document,
+                scene=str(document["scene"]),
+                limits={name: getattr(self._hub.settings, name) for name in LIMITS},
+                gl={"renderer": info.renderer, "software": info.software},
+            )
+        )
+        size = (message.width, message.height)
+        painter = Painter(self._hub, self._socket.send_bytes, self._tell, codecs, message.frame_ms, size)
+        self._live = Live(self._hub, painter, self._tell, self._spawn, state)
+
+    async def _first_state(self, message: protocol.Hello) -> BaseModel:
+        """The state asked for; where it is refused, say so and open with the scene's default."""
+        session = self._hub.session
+        scenes = [str(scene["name"]) for scene in session.scenes()]
+        wanted = message.scene or str((message.state or {}).get("scene") or scenes[0])
+        try:
+            if message.state is not None:
+                return session.validate(message.state)
+            return session.state(wanted, message.preset)
+        except UmbrageError as failure:
+            await self._refuse(failure)
+            return session.state(wanted if wanted in scenes else scenes[0])
+
+    def _spawn(self, work: Coroutine[Any, Any, None]) -> None:
+        task: asyncio.Task[None] = asyncio.create_task(self._guard(work))
+        self._tasks.add(task)
+        task.add_done_callback(self._tasks.discard)
+
+    async def _guard(self, work: Coroutine[Any, Any, None]) -> None:
+        """Sending to a client that left is no failure: the reader sees it leave."""
+        try:
+            await work
+        except GONE:
+            return
+        except Exception as failure:  # a fault of ours: logged, and told rather than a frozen picture
+            with contextlib.suppress(*GONE):
+                await self._refuse(failure)
+
+
+async def serve(socket: WebSocket, hub: Hub) -> None:
+    """Accept a live view, or say that there are too many."""
+    await socket.accept()
+    if len(hub.streams) >= hub.settings.sessions:
+        words = f"this server shows {hub.settings.sessions} live views at once; try again later"
+        await socket.close(TOO_MANY, words)
+        return
+    stream = Stream(socket, hub)
+    hub.streams.add(stream)
+    hub.metrics.sessions.set(len(hub.streams))
+    try:
+        await stream.run()
+    finally:
+        hub.streams.discard(stream)
+        hub.metrics.sessions.set(len(hub.streams))
