@@ -1,8 +1,8 @@
 """The forest's reference picture: float64, on the CPU, with its own standard error.
 
 Shares no code with the renderer: it receives the world as plain arrays and looks everything up again by itself. A fine
-march (at least 512 steps for a crossing of the layer) integrates every view ray and every shadow ray; the positions of
-rays within the pixels are the caller's, so that a technique's converged picture can use the same ones and the difference
+march (512 steps for a crossing of the layer) integrates every view ray and every shadow ray. The positions of rays
+within the pixels are the caller's, so that a technique's converged picture can use the same ones and the difference
 speaks of the method alone.
 """
 
@@ -58,7 +58,7 @@ class Options:
     tree_on_tree: bool = True
     within_tree: bool = True
     light: Literal["lambert", "gouraud"] = "lambert"
-    shadow_rays: int = 8
+    shadow_rays: int = 16
     steps_per_crossing: int = STEPS_PER_CROSSING
     longest_step: float = LONGEST_STEP
     seed: int = 1
@@ -71,9 +71,9 @@ class Reference:
 
     Attributes:
         radiance: (H, W, 4) float64 linear, premultiplied, W m-2 sr-1, row 0 at the top.
-        standard_error: (H, W) of the mean over the channels, W m-2 sr-1, at the given positions: it tells how far another
-            seed would fall, not what other positions in the pixel would show. Neighbouring strata stand in for repeated
-            draws, which overstates it where the shadow changes along the ray.
+        standard_error: (H, W) of the mean over the channels, W m-2 sr-1, at the given positions: it tells how far
+            another seed would fall, not what other positions in the pixel would show. Neighbouring strata stand in for
+            repeated draws, which overstates it where the shadow changes along the ray.
         seconds: wall-clock time.
     """
 

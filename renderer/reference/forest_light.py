@@ -1,8 +1,9 @@
 """What a ray of the forest reference carries: light scattered at each step, with exact visibility of the sun.
 
 Radiance leaving matter: albedo / pi (E_sun V f + E_sky a). Steps along the view ray are all integrated; only the sun's
-visibility V, which costs a march of its own, is sampled: by strata of equal unshadowed sunlight, one jittered shadow ray
-each. The estimate is unbiased for any number of strata, and equals the unshadowed sum exactly where nothing is shadowed.
+visibility V, which costs a march of its own, is sampled: by strata of equal unshadowed sunlight, one jittered shadow
+ray each. The estimate is unbiased for any number of strata, and its mean over the channels is exact where nothing is
+shadowed.
 """
 
 from __future__ import annotations
