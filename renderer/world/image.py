@@ -6,7 +6,6 @@ A picture is (height, width, 4) float32, linear and premultiplied, row 0 at the 
 from __future__ import annotations
 
 import io
-from typing import Literal, get_args
 
 import imagecodecs
 import numpy as np
@@ -17,9 +16,7 @@ from PIL import Image
 from renderer.core.errors import InputError
 from renderer.world.state import ToneCurve
 
-Format = Literal["png", "png16", "jpeg", "exr", "hdr", "npy"]
-
-FORMATS: tuple[str, ...] = get_args(Format)
+FORMATS = ("png", "png16", "jpeg", "exr", "hdr", "npy")
 """What `save_image` writes: png, png16 and jpeg as displayed, exr, hdr and npy as linear radiance."""
 
 MEDIA_TYPES: dict[str, str] = {
@@ -89,7 +86,7 @@ def display(
     return np.floor(_shown(linear, exposure_ev, curve, background) * 255.0 + 0.5).astype(np.uint8)
 
 
-def encode_rgb8(rgb8: NDArray[np.uint8], format: Literal["png", "jpeg"], quality: int = JPEG_QUALITY) -> bytes:  # noqa: A002
+def encode_rgb8(rgb8: NDArray[np.uint8], format: str, quality: int = JPEG_QUALITY) -> bytes:  # noqa: A002
     """A displayed picture as a PNG (lossless) or JPEG file.
 
     Args:
@@ -109,28 +106,30 @@ def encode_rgb8(rgb8: NDArray[np.uint8], format: Literal["png", "jpeg"], quality
 
 
 def save_image(
-    format: Format,  # noqa: A002 - the door's own word
-    linear: NDArray,
+    format: str,  # noqa: A002 - the door's own word
+    picture: NDArray,
     exposure_ev: float = 0.0,
     curve: ToneCurve = "filmic",
     background: tuple[float, float, float] = (0.0, 0.0, 0.0),
 ) -> bytes:
-    """A linear picture as a file's bytes.
+    """A picture as a file's bytes.
 
     Args:
         format: png, jpeg and png16 hold the displayed picture (8, 8 and 16 bits); exr and npy (float32 RGBA,
             premultiplied) and hdr (RGB with a shared exponent, over black) hold radiance, whatever the exposure.
-        linear: (height, width, 4) premultiplied radiance.
-        exposure_ev, curve, background: as in `display`; for displayed formats only.
+        picture: (height, width, 4) premultiplied radiance; or (height, width, 3) uint8, as displayed, for png and jpeg.
+        exposure_ev, curve, background: as in `display`, from radiance to displayed formats.
 
     Raises:
         InputError: a format that is not written, or an array of another shape.
     """
     if format not in FORMATS:
         raise InputError("format", "this format is not written", ", ".join(FORMATS))
-    pixels = np.ascontiguousarray(linear, dtype=np.float32)
-    if pixels.ndim != 3 or pixels.shape[2] != 4:
-        raise InputError("image", f"has shape {pixels.shape}", "height x width x 4")
+    if picture.dtype == np.uint8 and picture.ndim == 3 and picture.shape[2] == 3 and format in ("png", "jpeg"):
+        return encode_rgb8(picture, format)
+    pixels = np.ascontiguousarray(picture, dtype=np.float32)
+    if picture.dtype.kind != "f" or pixels.ndim != 3 or pixels.shape[2] != 4:
+        raise InputError("image", f"is {picture.dtype} of shape {pixels.shape}", "float, height x width x 4")
     if format == "npy":
         out = io.BytesIO()
         np.save(out, pixels, allow_pickle=False)

@@ -137,6 +137,6 @@ def photons(band: int, mu: float, albedo: float, count: int) -> float:
     return mu * landed / count
 
 
-def test_photons_fall_as_beer_says() -> None:
-    """The judge judged: without scattered light it is silent; a black ground darkens the sky."""
+def test_traced_photons_see_the_ground() -> None:
+    """The judge judged: what the ground throws back reaches it again."""
     assert photons(2, 0.7, 0.0, 20_000) < photons(2, 0.7, 0.9, 20_000)

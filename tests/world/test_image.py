@@ -94,7 +94,7 @@ def test_the_shader_shows_the_same(picture: np.ndarray, curve: str) -> None:
 @pytest.mark.parametrize(("name", "tolerance"), [("exr", 0.0), ("npy", 0.0), ("hdr", 1 / 128)])
 def test_radiance_survives_its_file(picture: np.ndarray, tmp_path: Path, name: str, tolerance: float) -> None:
     """EXR and .npy keep every bit and alpha; HDR keeps RGB to 1/128 of the pixel's largest channel, over black."""
-    back = _load(tmp_path, save_image(name, picture, exposure_ev=3.0))  # type: ignore[arg-type]
+    back = _load(tmp_path, save_image(name, picture, exposure_ev=3.0))
     largest = picture[..., :3].max(axis=2, keepdims=True)
     assert (np.abs(back[..., :3] - picture[..., :3]) <= tolerance * largest).all()
     np.testing.assert_array_equal(back[..., 3], 1.0 if name == "hdr" else picture[..., 3])
@@ -105,6 +105,7 @@ def test_displayed_pictures_survive_their_file(picture: np.ndarray, tmp_path: Pa
     codes = display(picture, -1.0)
     png = np.asarray(Image.open(io.BytesIO(save_image("png", picture, -1.0))))
     np.testing.assert_array_equal(png, codes)
+    assert save_image("png", codes) == save_image("png", picture, -1.0)
     deep = imagecodecs.png_decode(save_image("png16", picture, -1.0))
     assert deep.dtype == np.uint16
     assert np.abs(deep / 257.0 - codes).max() <= 0.51
@@ -138,7 +139,9 @@ def test_every_format_has_a_media_type_and_others_are_refused(picture: np.ndarra
     """Formats are named; a wrong one, or a picture of the wrong shape, is answered in words."""
     assert set(MEDIA_TYPES) == set(FORMATS)
     with pytest.raises(InputError, match="png"):
-        save_image("bmp", picture)  # type: ignore[arg-type]
+        save_image("bmp", picture)
+    with pytest.raises(InputError, match="uint8"):
+        save_image("exr", display(picture, 0.0))
     with pytest.raises(InputError, match="shape"):
         save_image("exr", picture[..., 0])
     with pytest.raises(InputError, match="shape"):
@@ -185,7 +188,7 @@ def test_a_file_that_claims_too_much_is_refused_before_it_is_opened(tmp_path: Pa
 def test_truncated_files_are_refused(picture: np.ndarray, tmp_path: Path, name: str) -> None:
     """Cut anywhere, a file is called damaged; nothing else escapes."""
     noise = np.random.default_rng(2).random((40, 40, 4)).astype(np.float32)
-    whole = save_image(name, noise)  # type: ignore[arg-type]
+    whole = save_image(name, noise)
     for kept in (3, 12, 40, len(whole) // 2, len(whole) - 30):
         with pytest.raises(AssetError):
             _load(tmp_path, whole[:kept])
@@ -196,7 +199,7 @@ def test_random_bytes_after_a_true_beginning_are_refused_or_read(picture: np.nda
     random = np.random.default_rng(11)
     refused = 0
     for name in FORMATS:
-        whole = np.frombuffer(save_image(name, picture), np.uint8)  # type: ignore[arg-type]
+        whole = np.frombuffer(save_image(name, picture), np.uint8)
         for _ in range(25):
             damaged = whole.copy()
             places = random.integers(8, len(damaged), 6)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from collections.abc import Iterator
 from typing import Any
@@ -104,6 +105,15 @@ def test_skylight_agrees_with_traced_photons(tables: Tables, band: int) -> None:
     sine = math.sin(math.radians(45.0))
     found = _at(tables, 45.0).sky_irradiance[band] / SOLAR_CONSTANT
     assert found == pytest.approx(photons(band, sine, 0.15, 200_000), rel=0.04)
+
+
+def test_photons_reject_a_sky_without_multiple_scattering() -> None:
+    """The same measure calls a singly scattered blue sky wrong, by more than five times its budget."""
+    air = dataclasses.replace(sky.atmosphere.breathe(sky.Atmosphere(), ANGULAR_RADIUS), glow=np.zeros((24, 49, 3)))
+    sun = np.array([math.radians(45.0)])
+    once = np.stack([sky._view_row(air, 6360.001, float(e), sun)[0] for e in view_directions()[0]])
+    found = float(np.sum(once[..., 2] * irradiance_weights()))
+    assert found < 0.8 * photons(2, math.sin(math.radians(45.0)), 0.15, 50_000)
 
 
 def test_segments_of_a_ray_are_many_enough(tables: Tables, monkeypatch: pytest.MonkeyPatch) -> None:
