@@ -73,22 +73,17 @@ def grove(seed: int = 1, size: int = 128, trees: int = 3, **changes: Any) -> For
                 x, y = u + 0.5 * v, v * np.sqrt(0.75)
                 out = np.stack([np.full(layers, x), np.full(layers, y), height - 0.6 * top], axis=1)
                 out /= (radius, radius, 0.4 * top)
-                    radius,
-                    radius,
-                    0.4 * top,
-                )
                 inside = (out**2).sum(axis=1) < 1
+                length = np.linalg.norm(out[inside], axis=1, keepdims=True) + 1e-9
                 alpha[inside, j % size, i % size] = rng.integers(20, 240, inside.sum())
-                normal[inside, j % size, i % size, :3] = (
-                    length = np.linalg.norm(out[inside], axis=1, keepdims=True) + 1e-9
-                    normal[inside, j % size, i % size, :3] = out[inside] / length * 127 + 128
-                )
+                normal[inside, j % size, i % size, :3] = out[inside] / length * 127 + 128
                 anchor[inside, j % size, i % size, :2] = np.round([128 - 16 * x, 128 - 16 * y])
     nodes = 33
     east = np.arange(nodes) - 16.0
+    ground = 6 * np.sin(east / 3)[None] * np.cos(east / 4)[:, None] + 6
+    cover = np.repeat(np.clip(0.5 + (east[None] + 8) / 4, 0, 1), nodes, axis=0)
     given: dict[str, Any] = {
-        "nodes": nodes, "normal": normal, "anchor": anchor, "elevation": 6 * np.sin(east / 3)[None] * np.cos(east / 4)[:, None] + 6,
-        "cover": np.repeat(np.clip(0.5 + (east[None] + 8) / 4, 0, 1), nodes, axis=0), "tint_strength": 0.2,
+        "nodes": nodes, "normal": normal, "anchor": anchor, "elevation": ground, "cover": cover, "tint_strength": 0.2,
         "tile": rng.integers(0, 4, (2, 2, 8, 2)).astype(np.uint8), "e_sky": (0.5, 0.6, 0.8), "sun": sun(130, 35)}  # fmt: skip
     given.update(changes)
     return flat(alpha, **given)
