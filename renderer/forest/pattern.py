@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import Any
 
@@ -18,7 +19,7 @@ from renderer.forest.presence import safe_distance
 from renderer.forest.tiles import RHOMBI, lattice, tile_table
 from renderer.forest.tree import Tree
 from renderer.forest.world_scale import CANOPY_HEIGHT, TILE_SIDE, VOXEL
-from renderer.world.voxelise import Grid, opacity_of, voxelise
+from renderer.world.voxelise import Grid, Voxels, opacity_of, voxelise
 
 CELL = round(TILE_SIDE / VOXEL)
 """Voxels a side of a rhombus."""
@@ -56,21 +57,29 @@ class Atlas:
         return Atlas(np.zeros((3, *shape), np.uint16), np.zeros((*shape, 3), np.float32), np.zeros((*shape, 4), np.float32),
                      np.zeros(shape, np.float32), np.zeros(shape, np.float32), anchor)
 
-    def add(self, tree: Tree, attributes: np.ndarray, standing: Standing) -> None:
-        """Voxelise one tree and lay it into every rhombus where it stands.
-
-        It is voxelised once, in the frame of its rhombus, so that all its copies are the same to the bit.
-        """
-        vertices = tree.placed(standing.scale, standing.azimuth, standing.foot)
-        sides = np.zeros((3, 3))
-        sides[:2, :2], sides[2, 2] = AXES, VOXEL
-        index = vertices @ np.linalg.inv(sides)
-        low, high = np.floor(index.min(axis=0)).astype(int)[:2], np.ceil(index.max(axis=0)).astype(int)[:2] + 1
-        layers = min(LAYERS, int(np.ceil(index[:, 2].max())) + 1)
-        grid = Grid(np.append(low, 0) @ sides, sides, (int(high[0] - low[0]), int(high[1] - low[1]), layers))
-        found = voxelise(vertices, tree.faces, attributes, grid)
-        lay(found.mask, found.area, found.normal, found.attributes, low, standing.foot, AXES, standing.cells * CELL,
+    def add(self, standing: Standing, corner: np.ndarray, found: Voxels) -> None:
+        """Lay one voxelised tree into every rhombus where it stands."""
+        lay(found.mask, found.area, found.normal, found.attributes, corner, standing.foot, AXES, standing.cells * CELL,
             self.mask, self.normal, self.sums, self.area, self.most, self.anchor)
+
+
+def voxels_of(tree: Tree, attributes: np.ndarray, standing: Standing) -> tuple[np.ndarray, Voxels]:
+    """One tree as voxels, in the frame of its rhombus, so that all its copies are the same to the bit.
+
+    Args:
+        tree: the mesh. attributes: (F, 4) linear albedo and wood of its faces. standing: its place.
+
+    Returns:
+        Voxel (i, j) of the block's corner, from that of the rhombus, and the block.
+    """
+    sides = np.zeros((3, 3))
+    sides[:2, :2], sides[2, 2] = AXES, VOXEL
+    to_index = np.linalg.inv(AXES)
+    middle, half = standing.foot @ to_index, standing.reach * np.linalg.norm(to_index, axis=0) + 0.5
+    low, high = np.floor(middle - half).astype(int), np.ceil(middle + half).astype(int)
+    layers = min(LAYERS, int(standing.scale * tree.height / VOXEL) + 1)
+    grid = Grid(np.append(low, 0) @ sides, sides, (int(high[0] - low[0]), int(high[1] - low[1]), layers))
+    return low, voxelise(tree.placed(standing.scale, standing.azimuth, standing.foot), tree.faces, attributes, grid)
 
 
 def bake_pattern(arguments: dict[str, Any], inputs: dict[str, Arrays], progress: Callable[[float, str], None]) -> Arrays:
@@ -94,10 +103,13 @@ def bake_pattern(arguments: dict[str, Any], inputs: dict[str, Arrays], progress:
     standing = plant(meshes, weights, float(arguments["density"]), int(arguments["seed"]))
     attributes = [np.concatenate([tree.colour, tree.wood[:, None]], axis=1).astype(np.float32) for tree in meshes]
     atlas = Atlas.empty()
-    for number, tree in enumerate(standing):
-        if number % 8 == 0:
-            progress(0.05 + 0.5 * number / len(standing), "turning trees into voxels")
-        atlas.add(meshes[tree.tree], attributes[tree.tree], tree)
+    with ThreadPoolExecutor(2) as pool:
+        for first in range(0, len(standing), 16):
+            progress(0.05 + 0.5 * first / len(standing), "turning trees into voxels")
+            some = standing[first : first + 16]
+            blocks = pool.map(lambda one: voxels_of(meshes[one.tree], attributes[one.tree], one), some)
+            for one, (corner, found) in zip(some, blocks, strict=True):
+                atlas.add(one, corner, found)
     level = _level(atlas, progress)
     progress(0.9, "making coarser levels")
     result = dict(level)

@@ -20,8 +20,14 @@ from renderer.forest.world_scale import TILE_SIDE, VOXEL
 MARGIN = 4.5 * VOXEL * np.sqrt(3) / 2
 """Between a crown and any edge that is not its own [m]: four voxels, whose rows stand sin 60 deg apart, and a half for the snapping."""
 
-GENERATIONS = ((0.84, 1.0, 500), (0.6, 0.84, 600), (0.36, 0.6, 900))
+GENERATIONS = ((0.84, 1.0, 400), (0.6, 0.84, 400), (0.36, 0.6, 500))
 """Scale of the trees, from old to young, and the darts thrown for each: the small ones find the gaps that the large ones left."""
+
+SPACING = 0.8
+"""Distance of two stems against the sum of their crown radii: crowns of a closed canopy interlock."""
+
+Rule = Callable[[np.ndarray, np.ndarray], np.ndarray]
+"""Which of some crowns, by feet (n, 2) [m] and reach (n,) [m], may stand in a region."""
 
 _CORNERS = {BOTTOM: ((0, 0), (1, 0), (0, 1), (1, -1)), LEFT: ((0, 0), (0, 1), (1, 0), (-1, 1)), DIAGONAL: ((1, 0), (0, 1), (0, 0), (1, 1))}
 """Lattice points of an edge's two ends and of the two triangles' other corners, from the rhombus that owns the edge."""
@@ -58,13 +64,14 @@ def plant(trees: Sequence[Tree], weights: np.ndarray, density: float, seed: int)
     """
     rng = np.random.Generator(np.random.PCG64(seed))
     base = lattice(TILE_SIDE)
-    darts = _Darts(trees, weights, 0.8 / np.sqrt(density), rng)
+    darts = _Darts(np.array([tree.reach for tree in trees]), np.array([tree.crown_radius for tree in trees]), weights,
+                   SPACING / np.sqrt(density), rng)
     strips: dict[tuple[int, int], list[Standing]] = {}
     for direction in (BOTTOM, LEFT, DIAGONAL):
         corners = np.array(_CORNERS[direction]) @ base
         for colour in (0, 1):
             cells = np.argwhere(EDGES[direction] == colour)
-            strips[direction, colour] = darts.throw(cells, [], corners, _strip_rule(corners), density)
+            strips[direction, colour] = darts.throw(cells, [], corners, _strip_rule(corners))
     planted = [tree for strip in strips.values() for tree in strip]
     for down in (0, 1):
         corners = np.array([(1, 0), (0, 1), (down, down)]) @ base
@@ -73,64 +80,69 @@ def plant(trees: Sequence[Tree], weights: np.ndarray, density: float, seed: int)
                 around = []
                 for direction, colour, step in zip((BOTTOM, LEFT, DIAGONAL), triple(p, q, down), ((0, down), (down, 0), (0, 0)), strict=True):
                     around += [(tree.foot + np.array(step) @ base, tree.spread) for tree in strips[direction, int(colour)]]
-                planted += darts.throw(np.array([[p, q]]), around, corners, _inside_rule(corners), density)
+                planted += darts.throw(np.array([[p, q]]), around, corners, _inside_rule(corners))
     return planted
 
 
-def _segment_distance(point: np.ndarray, a: np.ndarray, b: np.ndarray) -> float:
-    along = np.clip((point - a) @ (b - a) / ((b - a) @ (b - a)), 0, 1)
-    return float(np.hypot(*(point - a - along * (b - a))))
+def _segment_distance(points: np.ndarray, a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    along = np.clip((points - a) @ (b - a) / ((b - a) @ (b - a)), 0, 1)
+    return np.hypot(*(points - a - along[:, None] * (b - a)).T)
 
 
-def _strip_rule(corners: np.ndarray) -> Callable[[np.ndarray, float], bool]:
-    """Whether a crown of some reach belongs to the edge between the first two corners, and to no other."""
+def _strip_rule(corners: np.ndarray) -> Rule:
+    """Which crowns belong to the edge between the first two corners, and to no other."""
     a, b, c, d = corners
 
-    def holds(point: np.ndarray, reach: float) -> bool:
-        if _segment_distance(point, a, b) >= reach + MARGIN:
-            return False
-        return all(_segment_distance(point, *side) >= reach + MARGIN for side in ((a, c), (b, c), (a, d), (b, d)))
+    def holds(points: np.ndarray, reach: np.ndarray) -> np.ndarray:
+        own = _segment_distance(points, a, b) < reach + MARGIN
+        return own & _clear_of([(a, c), (b, c), (a, d), (b, d)], points, reach)
 
     return holds
 
 
-def _inside_rule(corners: np.ndarray) -> Callable[[np.ndarray, float], bool]:
-    """Whether a crown of some reach keeps clear of all three edges."""
+def _inside_rule(corners: np.ndarray) -> Rule:
+    """Which crowns keep clear of all three edges."""
     sides = [(corners[n], corners[(n + 1) % 3]) for n in range(3)]
-    return lambda point, reach: all(_segment_distance(point, *side) >= reach + MARGIN for side in sides)
+    return lambda points, reach: _clear_of(sides, points, reach)
 
 
+def _clear_of(sides: list[tuple[np.ndarray, np.ndarray]], points: np.ndarray, reach: np.ndarray) -> np.ndarray:
+    clear: np.ndarray = np.min([_segment_distance(points, *side) for side in sides], axis=0) >= reach + MARGIN
+    return clear
+
+
+@dataclass(frozen=True)
 class _Darts:
-    def __init__(self, trees: Sequence[Tree], weights: np.ndarray, spacing: float, rng: np.random.Generator) -> None:
-        self.reach = np.array([tree.reach for tree in trees])
-        self.spread = np.array([tree.crown_radius for tree in trees])
-        self.weights, self.spacing, self.rng = weights, spacing, rng
+    """Throws trees at regions of the plane."""
 
-    def throw(self, cells: np.ndarray, around: list[tuple[np.ndarray, float]], corners: np.ndarray,
-              rule: Callable[[np.ndarray, float], bool], density: float) -> list[Standing]:
-        """Plant one region: the triangle of three corners, or the two triangles on either side of the edge between the first two of four."""
-        feet, spreads = [foot for foot, _ in around], [spread for _, spread in around]
+    reach: np.ndarray
+    spread: np.ndarray
+    weights: np.ndarray
+    spacing: float
+    rng: np.random.Generator
+
+    def throw(self, cells: np.ndarray, around: list[tuple[np.ndarray, float]], corners: np.ndarray, rule: Rule) -> list[Standing]:
+        """Plant one region: the triangle of three corners, or both triangles beside the edge of the first two of four."""
+        feet = np.array([foot for foot, _ in around]).reshape(-1, 2)
+        spreads = np.array([spread for _, spread in around])
         planted: list[Standing] = []
         for low, high, darts in GENERATIONS:
-            for _ in range(int(darts * len(corners) / 4)):
-                point, kind, scale, azimuth = self._dart(corners, low, high)
-                reach, spread = scale * self.reach[kind], scale * self.spread[kind]
-                if feet:
-                    gaps = np.hypot(*(np.array(feet) - point).T) - self.spacing * (np.array(spreads) + spread)
-                    if gaps.min() < 0:
-                        continue
-                if not rule(point, reach):
+            points, kinds, scales, azimuths = self._volley(corners, low, high, darts * (len(corners) - 2))
+            reach, spread = scales * self.reach[kinds], scales * self.spread[kinds]
+            for n in np.flatnonzero(rule(points, reach)):
+                gaps = np.hypot(*(feet - points[n]).T) - self.spacing * (spreads + spread[n])
+                if gaps.size and gaps.min() < 0:
                     continue
-                feet.append(point)
-                spreads.append(spread)
-                planted.append(Standing(kind, scale, azimuth, point, cells, spread, reach))
+                feet, spreads = np.concatenate([feet, points[n : n + 1]]), np.append(spreads, spread[n])
+                planted.append(Standing(int(kinds[n]), float(scales[n]), float(azimuths[n]), points[n], cells,
+                                        float(spread[n]), float(reach[n])))
         return planted
 
-    def _dart(self, corners: np.ndarray, low: float, high: float) -> tuple[np.ndarray, int, float, float]:
-        third = corners[2 + int(self.rng.integers(len(corners) - 2))]
-        s, t = self.rng.random(2)
-        if s + t > 1:
-            s, t = 1 - s, 1 - t
-        point = corners[0] + s * (corners[1] - corners[0]) + t * (third - corners[0])
-        kind = int(self.rng.choice(len(self.weights), p=self.weights))
-        return point, kind, float(self.rng.uniform(low, high)), float(self.rng.uniform(0, 2 * np.pi))
+    def _volley(self, corners: np.ndarray, low: float, high: float, count: int) -> tuple[np.ndarray, ...]:
+        """Points over the region, with the number of a mesh, its scale and its turn."""
+        third = corners[2 + self.rng.integers(len(corners) - 2, size=count)]
+        s, t = self.rng.random((2, count, 1))
+        s, t = np.where(s + t > 1, 1 - s, s), np.where(s + t > 1, 1 - t, t)
+        points = corners[0] + s * (corners[1] - corners[0]) + t * (third - corners[0])
+        return (points, self.rng.choice(len(self.weights), size=count, p=self.weights), self.rng.uniform(low, high, count),
+                self.rng.uniform(0, 2 * np.pi, count))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
@@ -25,17 +26,17 @@ class Tree:
     colour: np.ndarray
     wood: np.ndarray
 
-    @property
+    @functools.cached_property
     def height(self) -> float:
         """Highest vertex [m]."""
         return float(self.vertices[:, 2].max())
 
-    @property
+    @functools.cached_property
     def reach(self) -> float:
         """Farthest that a vertex stands from the foot, horizontally [m]."""
         return float(np.hypot(self.vertices[:, 0], self.vertices[:, 1]).max())
 
-    @property
+    @functools.cached_property
     def crown_radius(self) -> float:
         """Radius [m] within which 90 % of the leaves stand, seen from above."""
         leaves = self.vertices[self.faces[~self.wood]].mean(axis=1) if not self.wood.all() else self.vertices

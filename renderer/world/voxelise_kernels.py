@@ -23,11 +23,6 @@ def _least(ax, ay, bx, by):
 
 
 @njit(cache=True, inline="always")
-def _snap(value):
-    return np.int64(np.floor(value * (_SUB * _STEP) + 0.5))
-
-
-@njit(cache=True, inline="always")
 def _first(value, wrap):
     """Number of the first sub-ray at or beyond a snapped coordinate (sub-rays stand in the middle of their square)."""
     first = (value + _STEP // 2 - 1) // _STEP
@@ -50,24 +45,24 @@ def _cross(a, b, c):
 
 
 @njit(cache=True, nogil=True)
-def _hits(index, face, axis, size, wrap, found):
+def _hits(index, snapped, face, axis, size, wrap, found):
     """Sub-rays of one axis that one face stops.
 
     Args:
-        index: vertices in voxels. face: three vertex numbers. found: int64 (rows, 4), result: cell i, j, k and bit; grown when too small.
+        index: vertices in voxels. snapped: the same in steps. face: three vertex numbers. found: int64 (rows, 4), result: cell i, j, k and bit; grown when too small.
 
     Returns:
         How many, and the array they are in.
     """
     u, v = (axis + 1) % 3, (axis + 2) % 3
-    a, b, c = index[face[0]], index[face[1]], index[face[2]]
-    ax, ay, bx, by, cx, cy = _snap(a[u]), _snap(a[v]), _snap(b[u]), _snap(b[v]), _snap(c[u]), _snap(c[v])
+    ax, ay, az = snapped[face[0], u], snapped[face[0], v], index[face[0], axis]
+    bx, by, bz = snapped[face[1], u], snapped[face[1], v], index[face[1], axis]
+    cx, cy, cz = snapped[face[2], u], snapped[face[2], v], index[face[2], axis]
     doubled = _edge(ax, ay, bx, by, cx, cy)
     if doubled == 0:
         return 0, found
     if doubled < 0:
-        b, c = c, b
-        bx, by, cx, cy = cx, cy, bx, by
+        bx, by, bz, cx, cy, cz = cx, cy, cz, bx, by, bz
         doubled = -doubled
     la, lb, lc = _least(bx, by, cx, cy), _least(cx, cy, ax, ay), _least(ax, ay, bx, by)
     count = 0
@@ -82,7 +77,7 @@ def _hits(index, face, axis, size, wrap, found):
                 grown = np.empty((2 * count, 4), np.int64)
                 grown[:count] = found
                 found = grown
-            depth = np.int64(np.floor((wa * a[axis] + wb * b[axis] + wc * c[axis]) / doubled))
+            depth = np.int64(np.floor((wa * az + wb * bz + wc * cz) / doubled))
             found[count, axis] = depth % size[axis] if wrap[axis] else depth
             found[count, u], found[count, v] = (m // _SUB) % size[u], (n // _SUB) % size[v]
             found[count, 3] = (m % _SUB) + _SUB * (n % _SUB)
@@ -103,6 +98,7 @@ def scan(index, world, faces, attributes, wrap, mask, area, normal, sums, parity
     size = np.array([mask.shape[3], mask.shape[2], mask.shape[1]])
     solid = parity.shape[1] > 1
     found = np.empty((4096, 4), np.int64)
+    snapped = np.floor(index * (_SUB * _STEP) + 0.5).astype(np.int64)
     for f in range(faces.shape[0]):
         face = faces[f]
         nx, ny, nz = _cross(world[face[0]], world[face[1]], world[face[2]])
@@ -114,7 +110,7 @@ def scan(index, world, faces, attributes, wrap, mask, area, normal, sums, parity
         share = length / projected
         nx, ny, nz = share * nx / length, share * ny / length, share * nz / length
         for axis in range(3):
-            count, found = _hits(index, face, axis, size, wrap, found)
+            count, found = _hits(index, snapped, face, axis, size, wrap, found)
             for h in range(count):
                 i, j, k, bit = found[h, 0], found[h, 1], found[h, 2], np.uint16(1 << found[h, 3])
                 depth = found[h, axis]
