@@ -31,8 +31,9 @@ class Control {
   }
 
   badge() {
-    const words = { bake: "precomputes", build: "recompiles" }[this.node.umbrage?.cost];
-    return words ? el("span", { class: "badge", text: words }) : null;
+    const cost = this.node.umbrage?.cost;
+    const words = { bake: "Starts a precomputation", build: "Recompiles the shader" }[cost];
+    return words ? el("span", { class: "badge", text: cost, title: words }) : null;
   }
 
   body(...nodes) {

@@ -1,18 +1,17 @@
-// Scenes and presets as a strip of real thumbnails, rendered by the server when the strip is first opened.
+// Scenes and presets as a strip of real thumbnails, drawn by the server when the strip is first opened.
 
 import * as api from "./api.js";
 import { el } from "./dom.js";
 import { humanise } from "./form.js";
 import { same } from "./document.js";
 
-const WIDTH = 288;
-const HEIGHT = 176;
+const WIDTH = 320;
+const HEIGHT = 200;
 
 /** The strip under the top bar. */
 export class Gallery {
   constructor(root, button, store, choose) {
     Object.assign(this, { root, button, store, choose });
-    this.thumbnails = new Map();
     button.addEventListener("click", () => this.unfold(root.hidden));
     root.addEventListener("keydown", (event) => {
       if (event.key !== "Escape") return;
@@ -48,14 +47,12 @@ export class Gallery {
       .map((item) => el("button", { type: "button", class: "quiet", text: item.title, title: item.help, on: { click: () => this.choose(item.name, null) } }));
     const cards = Object.entries(scene.presets).map(([name, preset]) => this.card(scene, name, preset));
     this.root.replaceChildren(el("div", { class: "strip", role: "group", "aria-label": `Presets of ${scene.title}` }, cards), ...others);
-    this.fill(scene);
     this.root.querySelector("button")?.focus({ preventScroll: true });
   }
 
   card(scene, name, preset) {
-    const image = el("img", { alt: "", width: WIDTH / 2, height: HEIGHT / 2, data: { preset: name } });
-    const known = this.thumbnails.get(`${scene.name}/${name}`);
-    if (known) image.src = known;
+    const src = `api/scenes/${encodeURIComponent(scene.name)}/presets/${encodeURIComponent(name)}/thumbnail.jpg`;
+    const image = el("img", { alt: "", width: WIDTH, height: HEIGHT, src });
     return el("button", { type: "button", class: "thumbnail", on: { click: () => this.pick(name) } },
       image, el("span", { class: "thumbnail-title", text: preset.title ?? humanise(name) }), el("span", { class: "thumbnail-help", text: preset.help ?? "" }));
   }
@@ -64,22 +61,5 @@ export class Gallery {
     this.unfold(false);
     this.button.focus();
     this.choose(this.store.scene.name, name);
-  }
-
-  /** One after the other, so that thumbnails never hold up the picture. */
-  async fill(scene) {
-    if (this.filling) return;
-    this.filling = true;
-    for (const [name, preset] of Object.entries(scene.presets)) {
-      const key = `${scene.name}/${name}`;
-      if (this.thumbnails.has(key)) continue;
-      const state = { ...preset.document, quality: { kind: "samples", n: 4 } };
-      const blob = await api.render(state, WIDTH, HEIGHT, "image/jpeg").catch(() => null);
-      if (!blob) continue;
-      this.thumbnails.set(key, URL.createObjectURL(blob));
-      const image = this.root.querySelector(`img[data-preset="${CSS.escape(name)}"]`);
-      if (image) image.src = this.thumbnails.get(key);
-    }
-    this.filling = false;
   }
 }

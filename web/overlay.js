@@ -18,7 +18,7 @@ export class Overlay {
   constructor(root, stats) {
     this.stats = stats;
     const id = freshId("costs");
-    this.summary = el("span", { class: "chip-text", text: "waiting for the first picture" });
+    this.summary = el("span", { class: "chip-text", text: "no picture yet" });
     this.table = el("dl", { id, class: "costs", hidden: true });
     this.button = el("button", { type: "button", class: "chip", "aria-expanded": "false", "aria-controls": id, "aria-label": "What a picture costs",
       on: { click: () => this.unfold(this.table.hidden) } }, el("span", { class: "lamp", "aria-hidden": "true" }), this.summary);

@@ -69,7 +69,8 @@ export class Link extends EventTarget {
       this.ready = true;
       this.attempt = 0;
       this.dispatchEvent(new CustomEvent("open", { detail: message }));
-    } else if (message.type === "state") this.settle(message);
+    } else if (message.type === "progress") this.untime();
+    else if (message.type === "state") this.settle(message);
     else if (message.type === "error") this.refuse(message);
     this.dispatchEvent(new CustomEvent("message", { detail: message }));
   }
@@ -120,7 +121,12 @@ export class Link extends EventTarget {
     const shown = this.sent.filter((entry) => entry.version !== null && entry.version <= version);
     this.sent = this.sent.filter((entry) => !shown.includes(entry));
     this.pump();
-    return shown.map((entry) => entry.time);
+    return shown.map((entry) => entry.time).filter((time) => time !== null);
+  }
+
+  /** A precomputation began: what waits for it says nothing about latency. */
+  untime() {
+    for (const entry of this.sent) entry.time = null;
   }
 
   ack(sequence) {
