@@ -1,0 +1,53 @@
+"""Names the forest's precomputations, so that every technique asks for the same ones."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from renderer.core.params import bake_arguments
+from renderer.core.technique import Bake
+from renderer.forest.canopy_horizon import bake_canopy_horizon
+from renderer.forest.ground import bake_ground
+from renderer.forest.pattern import bake_pattern
+from renderer.forest.terrain_horizon import bake_terrain_horizon
+from renderer.world.sky import bake_sky
+
+if TYPE_CHECKING:
+    from renderer.forest.state import ForestState
+
+
+def ground_bake(state: ForestState) -> Bake:
+    """Heights and forest cover over the square."""
+    arguments = {"terrain": bake_arguments(state.terrain), "cover": bake_arguments(state.cover)}
+    return Bake("terrain", bake_ground, arguments, seconds=1)
+
+
+def pattern_bake(state: ForestState) -> Bake:
+    """The texture-cell atlas."""
+    return Bake("pattern", bake_pattern, bake_arguments(state.canopy), seconds=20)
+
+
+def terrain_horizon_bake(terrain: Bake, sectors: int) -> Bake:
+    """Terrain horizon in azimuth sectors."""
+    return Bake("terrain_horizon", bake_terrain_horizon, {"sectors": sectors}, (terrain,), seconds=4)
+
+
+def canopy_horizon_bake(pattern: Bake, sectors: int, height_low: float) -> Bake:
+    """Canopy horizon over the tile at two heights."""
+    return Bake(
+        "canopy_horizon", bake_canopy_horizon, {"sectors": sectors, "height_low": height_low}, (pattern,), seconds=5
+    )
+
+
+def sky_bake() -> Bake:
+    """Sun and sky light by elevation."""
+    return Bake("sky", bake_sky, {}, seconds=8)
+
+
+def bakes(state: ForestState) -> list[Bake]:
+    """Every precomputation a state needs, inputs first, each once."""
+    terrain, pattern = ground_bake(state), pattern_bake(state)
+    wanted = [sky_bake(), terrain, pattern]
+    for technique in state.techniques().values():
+        wanted += technique.bakes(state, terrain, pattern)
+    return list({(bake.name, str(bake.arguments)): bake for bake in wanted}.values())

@@ -1,0 +1,184 @@
+"""Draws the forest on the GL thread."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from renderer.core.params import uniforms
+from renderer.core.technique import BakedArrays
+from renderer.forest.program import frame_source, pass_source
+from renderer.forest.textures import ground_textures, pattern_textures, tile_map
+from renderer.forest.world_scale import CANOPY_HEIGHT, CELL, NODES, REACH, TILE_SIDE, VOXEL
+from renderer.gl.context import GL
+from renderer.gl.program import AnyTexture
+from renderer.gl.resident import Resident
+from renderer.gl.targets import Target, run_fullscreen
+from renderer.world.camera import Orthographic, camera_uniforms
+from renderer.world.sky import sky_for, sky_uniforms
+from renderer.world.sun import angles, direction
+
+if TYPE_CHECKING:
+    from renderer.forest.state import ForestState
+
+Baked = Mapping[str, BakedArrays]
+
+
+class ForestRenderer:
+    """Textures of what was baked, and the frames drawn with them; one serves every view of the process."""
+
+    def __init__(self, gl: GL) -> None:
+        self._gl = gl
+        self._baked = Resident(gl, 6)
+        self._moment = Resident(gl, 24)
+        self._steepness: dict[str, tuple[float, float]] = {}
+
+    def draw(
+        self, state: ForestState, baked: Baked, size: tuple[int, int], offset: tuple[float, float], sample: int
+    ) -> None:
+        """Draw one sample as linear premultiplied radiance into the bound framebuffer.
+
+        Args:
+            state, baked: the document and what it needed baked.
+            size: (width, height) in pixels.
+            offset: of the sample inside its pixel, from the top-left corner.
+            sample: its number, which turns the jitter.
+        """
+        values = self._world(state, baked)
+        textures: dict[str, AnyTexture] = self._world_textures(state, baked)
+        values |= self._shadow_pass(state, baked, size, values, textures)
+        self._technique_textures(state, baked, textures)
+        for slot, technique in state.techniques().items():
+            values |= uniforms(technique, slot) | technique.constants()
+        values |= camera_uniforms(state.camera, *size) | self._pixel(state, size)
+        values |= {"picture_size": size, "pixel_offset": offset, "sample_shift": float(sample)}
+        run_fullscreen(self._gl, frame_source(state), textures | self._sky(state, baked), values)
+
+    def release(self) -> None:
+        """Free every texture."""
+        self._baked.release()
+        self._moment.release()
+
+    def bytes_held(self, baked: Baked) -> int:
+        """Bytes of the arrays behind a frame's textures."""
+        return sum(array.nbytes for entry in baked.values() for array in entry.arrays.values())
+
+    def _world_textures(self, state: ForestState, baked: Baked) -> dict[str, AnyTexture]:
+        ground, pattern = baked["terrain"], baked["pattern"]
+        seed = state.ground.map_seed
+        return {
+            **self._baked.get(ground.key, lambda: ground_textures(self._gl, ground.arrays)),
+            **self._baked.get(
+                ("tiles", seed), lambda: {"tiles": self._gl.texture2d(tile_map(seed), "nearest", "repeat")}
+            ),
+            **self._baked.get(pattern.key, lambda: pattern_textures(self._gl, pattern.arrays)),
+        }  # type: ignore[dict-item]
+
+    def _world(self, state: ForestState, baked: Baked) -> dict[str, Any]:
+        ground = baked["terrain"]
+        if ground.key not in self._steepness:
+            self._steepness[ground.key] = relief(ground.arrays["elevation"])
+        steepness, top = self._steepness[ground.key]
+        now = sky_for(baked["sky"].arrays, angles(state.sun)[1])
+        sun = direction(state.sun)
+        return {
+            "terrain_cell": CELL,
+            "terrain_nodes": float(NODES),
+            "terrain_steepness": steepness,
+            "tile_side": TILE_SIDE,
+            "voxel_size": VOXEL,
+            "canopy_height": CANOPY_HEIGHT,
+            "scene_top": top + CANOPY_HEIGHT,
+            "scene_reach": REACH,
+            "sun_direction": sun,
+            "sun_elevation": angles(state.sun)[1],
+            "sun_irradiance": now.sun_irradiance,
+            "sky_irradiance": now.sky_irradiance,
+            **sky_uniforms(now, sun),
+            **uniforms(state.ground, "ground"),
+        }
+
+    def _sky(self, state: ForestState, baked: Baked) -> dict[str, AnyTexture]:
+        sky, elevation = baked["sky"], angles(state.sun)[1]
+        made = self._moment.get(
+            ("sky", sky.key, elevation), lambda: {"sky_view": self._gl.texture2d(sky_for(sky.arrays, elevation).view)}
+        )
+        return dict(made)  # type: ignore[arg-type]
+
+    def _technique_textures(self, state: ForestState, baked: Baked, textures: dict[str, AnyTexture]) -> None:
+        arrays = {name: entry.arrays for name, entry in baked.items()}
+        for slot, technique in state.techniques().items():
+            key = (slot, technique.frame_key(state), tuple(sorted(entry.key for entry in baked.values())))
+            if technique.frame_key(state):
+                made = self._moment.get(
+                    key,
+                    lambda t=technique, s=slot: {  # type: ignore[misc]
+                        f"{s}_{name}": self._gl.texture2d(array.astype(np.float32), wrap=t.wrap.get(name, "clamp"))
+                        for name, array in t.frame_textures(state, arrays).items()
+                    },
+                )
+                textures |= made  # type: ignore[arg-type]
+
+    def _shadow_pass(
+        self,
+        state: ForestState,
+        baked: Baked,
+        size: tuple[int, int],
+        values: dict[str, Any],
+        textures: dict[str, AnyTexture],
+    ) -> dict[str, Any]:
+        """Draw the passes that look from the sun, unless they are still the last ones; their uniforms."""
+        arrays = {name: entry.arrays for name, entry in baked.items()}
+        given: dict[str, Any] = {}
+        for slot, technique in state.techniques().items():
+            sun_pass = technique.sun_pass(state, arrays, size)
+            if sun_pass is None:
+                continue
+            key = (
+                slot,
+                technique,
+                angles(state.sun),
+                state.camera,
+                size[0] / size[1],
+                baked["terrain"].key,
+                baked["pattern"].key,
+            )
+            sampled = {name: texture for name, texture in textures.items() if not name.startswith(slot)}
+            made = self._moment.get(
+                key,
+                lambda p=sun_pass, s=slot, t=sampled: {  # type: ignore[misc]
+                    "target": self._draw_pass(s, p, values, t)
+                },
+            )
+            target = made["target"]
+            assert isinstance(target, Target)
+            textures[f"{slot}_{sun_pass.name}"] = target.texture
+            given |= sun_pass.uniforms
+        return given
+
+    def _draw_pass(self, slot: str, sun_pass: Any, values: dict[str, Any], textures: dict[str, AnyTexture]) -> Target:
+        bound = self._gl.ctx.fbo
+        target = Target(self._gl, sun_pass.resolution, sun_pass.resolution, components=1)
+        target.use()
+        target.clear()  # so that it holds the pass whether the frame around it replaces or adds
+        run_fullscreen(self._gl, pass_source(slot, sun_pass), textures, values | dict(sun_pass.uniforms))
+        bound.use()
+        return target
+
+    @staticmethod
+    def _pixel(state: ForestState, size: tuple[int, int]) -> dict[str, float]:
+        """Width of a pixel, as an angle in perspective and as a length in a parallel view."""
+        if isinstance(state.camera, Orthographic):
+            return {"pixel_angle": 0.0, "pixel_width": state.camera.width / size[0]}
+        return {"pixel_angle": 2 * math.tan(math.radians(state.camera.field_of_view) / 2) / size[1], "pixel_width": 0.0}
+
+
+def relief(elevation: np.ndarray) -> tuple[float, float]:
+    """Steepest rise over run of the bilinear ground, and its highest point [m]."""
+    east = np.abs(np.diff(elevation, axis=1)) / CELL
+    north = np.abs(np.diff(elevation, axis=0)) / CELL
+    steepest = np.hypot(np.maximum(east[:-1], east[1:]), np.maximum(north[:, :-1], north[:, 1:])).max()
+    return float(steepest), float(elevation.max())

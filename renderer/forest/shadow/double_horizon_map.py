@@ -1,0 +1,78 @@
+"""Double horizon maps (Cohen 2004, section 3.1): the thesis' own technique."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
+
+import numpy as np
+
+from renderer.core.params import param
+from renderer.core.technique import Arrays, Bake
+from renderer.forest.bakes import canopy_horizon_bake, terrain_horizon_bake
+from renderer.forest.horizon_textures import at_azimuth, terrain_at
+from renderer.forest.technique import ForestTechnique
+from renderer.world.sun import angles
+
+if TYPE_CHECKING:
+    from renderer.forest.state import ForestState
+
+
+class DoubleHorizonMap(ForestTechnique):
+    """Two horizon maps, at the canopy's top and halfway, interpolated by the height of the point."""
+
+    title: ClassVar[str] = "Double horizon map"
+    caption: ClassVar[str] = "A horizon at the treetops, another halfway down, blended by height."
+    paper: ClassVar[str] = "Cohen 2004, section 3.1"
+    textures: ClassVar[Mapping[str, str]] = {"terrain": "sampler2D", "canopy": "sampler2D"}
+    wrap: ClassVar[Mapping[str, Literal["clamp", "repeat"]]] = {"canopy": "repeat"}
+
+    extra_declarations: ClassVar[tuple[str, ...]] = ("uniform float shadow_low; // normalised height of the low map",)
+
+    kind: Literal["double_horizon_map"] = "double_horizon_map"
+    sectors: Literal[4, 8, 16, 32] = param(
+        16,
+        label="Sectors",
+        help="Azimuth sectors of the maps; the thesis has 4.",
+        cost="bake",
+        source="Cohen 2004, section 3.1",
+    )
+    height_low: float = param(
+        0.5,
+        label="Height of the low map",
+        help="Normalised canopy height of the lower probes.",
+        unit="ratio",
+        cost="bake",
+        ge=0,
+        le=0.95,
+        source="Cohen 2004, section 3.1; errata 000-1",
+    )
+    softness: float = param(
+        3.0,
+        label="Half penumbra",
+        help="Half width of the soft threshold; 9 in the thesis, 0.27 the sun's own radius.",
+        unit="deg",
+        ge=0.01,
+        le=20,
+        source="Cohen 2004, listing 10.1; errata 000-2",
+    )
+    strength: float = param(
+        1.0, label="Strength", help="Share of the shadow.", unit="ratio", ge=0, le=1, source="Cohen 2004, section 5.4"
+    )
+
+    def bakes(self, state: ForestState, terrain: Bake, pattern: Bake) -> list[Bake]:
+        return [
+            terrain_horizon_bake(terrain, self.sectors),
+            canopy_horizon_bake(pattern, self.sectors, self.height_low),
+        ]
+
+    def frame_key(self, state: ForestState) -> tuple[Any, ...]:
+        return (self.kind, self.sectors, self.height_low, round(angles(state.sun)[0], 7))
+
+    def frame_textures(self, state: ForestState, baked: Mapping[str, Arrays]) -> dict[str, np.ndarray]:
+        azimuth = angles(state.sun)[0]
+        top, low = (at_azimuth(level, azimuth) for level in baked["canopy_horizon"]["sectors"])
+        return {"terrain": terrain_at(baked["terrain_horizon"], azimuth), "canopy": np.stack([top, low], axis=-1)}
+
+    def constants(self) -> dict[str, float]:
+        return {"shadow_low": self.height_low}

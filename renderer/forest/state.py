@@ -1,0 +1,157 @@
+"""The forest's whole state document."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from pydantic import Field
+
+from renderer.core.params import Colour, Model, param
+from renderer.core.registry import slot_union
+from renderer.world.camera import Camera, Orbit
+from renderer.world.state import SceneState
+from renderer.world.terrain import TerrainReading
+
+SLOTS = ("geometry", "shadow", "height_shading", "light", "sky", "filter")
+DEFAULTS = {
+    "geometry": "ray_march",
+    "shadow": "double_horizon_map",
+    "height_shading": "empirical",
+    "light": "lambert",
+    "sky": "ambient",
+    "filter": "mipmap",
+}
+
+
+class BuiltInTerrain(Model):
+    """A square of the elevation model that comes with the program."""
+
+    kind: Literal["built_in"] = "built_in"
+    name: Literal["jacksboro_fault"] = param(
+        "jacksboro_fault", label="Model", help="Elevation model near Jacksboro, Tennessee.", cost="bake"
+    )
+
+
+class UserTerrain(Model):
+    """A square of an uploaded elevation model."""
+
+    kind: Literal["asset"] = "asset"
+    asset: str = param(
+        ..., label="File", help="An uploaded terrain, as asset:HASH.", cost="bake", pattern=r"^asset:[0-9a-f]{64}$"
+    )
+    east: float = param(
+        0.0, label="East", help="Centre of the square, from the model's centre.", unit="m", cost="bake", ge=-1e6, le=1e6
+    )
+    north: float = param(
+        0.0,
+        label="North",
+        help="Centre of the square, from the model's centre.",
+        unit="m",
+        cost="bake",
+        ge=-1e6,
+        le=1e6,
+    )
+    reading: TerrainReading = param(TerrainReading(), label="Reading", help="What the file leaves unsaid.", cost="bake")
+
+
+Terrain = Annotated[BuiltInTerrain | UserTerrain, Field(discriminator="kind")]
+
+
+class Cover(Model):
+    """Where trees may stand."""
+
+    clearings: float = param(
+        0.12,
+        label="Clearings",
+        help="Share of the land left open in glades and meadows.",
+        unit="ratio",
+        cost="bake",
+        ge=0,
+        le=1,
+        step=0.01,
+    )
+    glade_size: float = param(
+        160.0,
+        label="Size of the glades",
+        help="Length over which forest turns to meadow and back.",
+        unit="m",
+        cost="bake",
+        ge=20,
+        le=2000,
+    )
+    steepest: float = param(
+        48.0, label="Steepest slope", help="Trees stand on no steeper ground.", unit="deg", cost="bake", ge=5, le=89
+    )
+    tree_line: float = param(
+        9000.0, label="Tree line", help="No trees above this elevation.", unit="m", cost="bake", ge=-500, le=9000
+    )
+    seed: int = param(7, label="Seed", help="Of the glades' shapes.", cost="bake", ge=0, le=2**31 - 1)
+
+
+class Canopy(Model):
+    """The pattern of texture cells."""
+
+    broadleaf: float = param(
+        1.0, label="Broadleaf", help="Weight in the mixture of species.", unit="ratio", cost="bake", ge=0, le=1
+    )
+    conifer: float = param(
+        0.8, label="Conifer", help="Weight in the mixture of species.", unit="ratio", cost="bake", ge=0, le=1
+    )
+    birch: float = param(
+        0.4, label="Birch", help="Weight in the mixture of species.", unit="ratio", cost="bake", ge=0, le=1
+    )
+    mesh: str = param(
+        "",
+        label="Own tree",
+        help="An uploaded mesh, as asset:HASH; it replaces the built-in species.",
+        cost="bake",
+        pattern=r"^(asset:[0-9a-f]{64})?$",
+    )
+    density: float = param(
+        1.0, label="Density", help="Of the stand, against a closed forest.", unit="ratio", cost="bake", ge=0.1, le=1.5
+    )
+    seed: int = param(1, label="Seed", help="Of the trees' places and shapes.", cost="bake", ge=0, le=2**31 - 1)
+
+
+class Ground(Model):
+    """What shows between the trees."""
+
+    albedo: Colour = param((0.16, 0.15, 0.07), label="Ground albedo", help="Reflectance of the soil and the grass.")
+    tint_strength: float = param(
+        0.35, label="Tree tint", help="How much one tree's colour differs from the next.", unit="ratio", ge=0, le=0.9
+    )
+    map_seed: int = param(0, label="Map seed", help="Of the hash that lays the tiles.", ge=0, le=2**31 - 1)
+
+
+def _slot(name: str, title: str, help_text: str) -> Any:
+    return param({"kind": DEFAULTS[name]}, label=title, help=help_text, cost="host")
+
+
+class ForestState(SceneState):
+    """State of the forest: where one looks from, the sun, the land, the trees, and one technique per slot."""
+
+    scene: Literal["forest"] = "forest"
+    camera: Camera = param(
+        Orbit(target=(0.0, 0.0, 180.0), distance=900.0, azimuth=200.0, elevation=22.0),
+        label="Camera",
+        help="Where the picture is taken from.",
+        cost="host",
+    )
+    terrain: Terrain = param(BuiltInTerrain(), label="Terrain", help="The land.", cost="bake")
+    cover: Cover = param(Cover(), label="Cover", help="Where trees may stand.", cost="bake")
+    canopy: Canopy = param(Canopy(), label="Trees", help="What grows there.", cost="bake")
+    ground: Ground = param(Ground(), label="Ground and tint", help="Ground colour and the trees' own.")
+    geometry: slot_union("forest", "geometry") = _slot("geometry", "Geometry", "How the canopy is sampled along a ray.")  # type: ignore[valid-type]
+    shadow: slot_union("forest", "shadow") = _slot("shadow", "Shadow", "Who hides the sun from whom.")  # type: ignore[valid-type]
+    height_shading: slot_union("forest", "height_shading") = _slot(  # type: ignore[valid-type]
+        "height_shading", "Height shading", "Light by height in the canopy."
+    )
+    light: slot_union("forest", "light") = _slot("light", "Light", "How a leaf answers the sun.")  # type: ignore[valid-type]
+    sky: slot_union("forest", "sky") = _slot("sky", "Sky light", "How the sky lights the canopy.")  # type: ignore[valid-type]
+    filter: slot_union("forest", "filter") = _slot(
+        "filter", "Filtering", "Which level of the pattern a distance deserves."
+    )  # type: ignore[valid-type]
+
+    def techniques(self) -> dict[str, Any]:
+        """The chosen technique of each slot."""
+        return {slot: getattr(self, slot) for slot in SLOTS}

@@ -1,0 +1,66 @@
+"""What a forest technique adds to a technique: the bakes it needs and the textures it resolves for a frame."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
+
+import numpy as np
+
+from renderer.core.technique import Arrays, Bake, Technique
+
+if TYPE_CHECKING:
+    from renderer.forest.state import ForestState
+
+
+@dataclass(frozen=True)
+class SunPass:
+    """A picture drawn from the sun before the frame: the depth pass of a shadow map.
+
+    Attributes:
+        name: sampler it fills, as named in the technique's `textures`.
+        glsl: file with `vec4 <slot>_<name>_texel(vec2 pixel)`, relative to the shader root.
+        declarations: of the uniforms below.
+        resolution: side of the square target in texels.
+        uniforms: what both the pass and the frame read.
+    """
+
+    name: str
+    glsl: str
+    declarations: tuple[str, ...]
+    resolution: int
+    uniforms: Mapping[str, Any]
+
+
+class ForestTechnique(Technique):
+    """A technique of the forest.
+
+    `textures` names its samplers; `frame_textures` fills them from what was baked, again each time `frame_key` changes.
+    """
+
+    extra_declarations: ClassVar[tuple[str, ...]] = ()
+    """GLSL declarations of uniforms that are no live parameters: what `constants` and its pass give."""
+
+    wrap: ClassVar[Mapping[str, Literal["clamp", "repeat"]]] = {}
+    """How its textures continue beyond their edges; clamped where it does not say."""
+
+    def bakes(self, state: ForestState, terrain: Bake, pattern: Bake) -> list[Bake]:
+        """The precomputations this technique needs beside the terrain and the pattern."""
+        return []
+
+    def constants(self) -> dict[str, Any]:
+        """Values of `extra_declarations` that follow from the technique's own parameters."""
+        return {}
+
+    def frame_key(self, state: ForestState) -> tuple[Any, ...]:
+        """What its frame textures depend on."""
+        return ()
+
+    def frame_textures(self, state: ForestState, baked: Mapping[str, Arrays]) -> dict[str, np.ndarray]:
+        """Arrays (H, W) or (H, W, C) float32 for its samplers, row 0 at the south (texture coordinate 0)."""
+        return {}
+
+    def sun_pass(self, state: ForestState, baked: Mapping[str, Arrays], size: tuple[int, int]) -> SunPass | None:
+        """The pass to draw from the sun for a picture of `size` (width, height), if the technique has one."""
+        return None

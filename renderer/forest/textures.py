@@ -1,0 +1,97 @@
+"""GPU textures of what the forest baked."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from renderer.core.technique import Arrays
+from renderer.forest.tiles import cell_hash, tile_table
+from renderer.forest.world_scale import CELL
+from renderer.gl.context import GL
+from renderer.gl.program import AnyTexture
+from renderer.gl.textures import Wrap
+from renderer.world.terrain import normals
+
+COVER_FINER = 4
+"""How many times finer the yes-or-no map of trees is than the terrain grid: 2 m, less than a crown."""
+
+TILE_MAP = 512
+"""Cells a side of the patch of tiles that is kept: 20 km, beyond what is drawn."""
+
+
+def bilinear_cells(elevation: np.ndarray) -> np.ndarray:
+    """The four coefficients of each cell's bilinear height, (N, N, 4) float32, row 0 at the south.
+
+    One unfiltered fetch then gives the exact height, where filtering four heights in hardware costs twice as much.
+    """
+    height = elevation[::-1]
+    padded = np.pad(height, ((0, 1), (0, 1)), mode="edge")
+    here, east, north, both = padded[:-1, :-1], padded[:-1, 1:], padded[1:, :-1], padded[1:, 1:]
+    return np.stack([here, east - here, north - here, here - east - north + both], axis=-1).astype(np.float32)
+
+
+def fine_cover(cover: np.ndarray) -> np.ndarray:
+    """Where trees may stand, 0 or 255, `COVER_FINER` times finer than the grid: bilinear cover above one half."""
+    nodes = cover.shape[0]
+    place = (np.arange(nodes * COVER_FINER) + 0.5) / COVER_FINER - 0.5
+    low = np.clip(np.floor(place).astype(int), 0, nodes - 2)
+    weight = np.clip(place - low, 0, 1).astype(np.float32)
+    rows = cover[low] * (1 - weight)[:, None] + cover[low + 1] * weight[:, None]
+    both = rows[:, low] * (1 - weight) + rows[:, low + 1] * weight
+    return np.where(both[::-1] > 0.5, np.uint8(255), np.uint8(0))
+
+
+def ground_textures(gl: GL, ground: Arrays) -> dict[str, AnyTexture]:
+    """`heights`, `normals` and `cover` from the `terrain` bake."""
+    slope = normals(ground["elevation"], (CELL, CELL))[::-1]
+    return {
+        "heights": gl.texture2d(bilinear_cells(ground["elevation"]), filter="nearest"),
+        "normals": gl.texture2d(np.concatenate([slope, np.zeros_like(slope[..., :1])], axis=-1).astype(np.float16)),
+        "cover": gl.texture2d(fine_cover(ground["cover"]), filter="nearest"),
+    }
+
+
+def packed(colour: np.ndarray, anchor: np.ndarray) -> np.ndarray:
+    """Colour and anchor of each voxel as four 16-bit numbers, two bytes in each: red green, blue opacity, foot x y, distance wood.
+
+    A march then reads all it needs of a voxel from one cache line.
+    """
+    both = np.concatenate([colour, anchor], axis=-1).astype(np.uint16)
+    return both[..., 0::2] * np.uint16(256) + both[..., 1::2]
+
+
+def pattern_textures(gl: GL, pattern: Arrays) -> dict[str, AnyTexture]:
+    """`pattern_voxels` and `pattern_normal` from the `pattern` bake, with its own mip levels."""
+    levels = [{name: pattern[f"{name}{end}"] for name in ("colour", "normal", "anchor")} for end in _endings(pattern)]
+    wrap: tuple[Wrap, Wrap, Wrap] = ("repeat", "repeat", "clamp")
+    voxels = [packed(level["colour"], level["anchor"]) for level in levels]
+    normals_of = [level["normal"] for level in levels]
+    return {
+        "pattern_voxels": gl.texture3d(voxels[0], "nearest", wrap, voxels[1:]),
+        "pattern_normal": gl.texture3d(normals_of[0], "nearest", wrap, normals_of[1:]),
+    }
+
+
+def _endings(pattern: Arrays) -> list[str]:
+    return ["", *(f"_{level}" for level in range(1, 16) if f"colour_{level}" in pattern)]
+
+
+def tile_map(seed: int) -> np.ndarray:
+    """Tiles of a patch of the lattice around the origin, (TILE_MAP, TILE_MAP, 2) uint8: the upward and the downward triangle of a cell.
+
+    The tiling needs no storage (`tiles.locate` reaches any point); the shader reads this patch of it because one fetch costs
+    less than four hashes. Cell (i, j) is at column i mod TILE_MAP, row j mod TILE_MAP; each value is 4 p + q.
+    """
+    half = TILE_MAP // 2
+    cell = (np.arange(TILE_MAP) + half) % TILE_MAP - half
+    j, i = np.meshgrid(cell, cell, indexing="ij")
+    table = tile_table()
+    maps = []
+    for down in (0, 1):
+        bottom = cell_hash(i, j + down, 0, seed) & 1
+        left = cell_hash(i + down, j, 1, seed) & 1
+        diagonal = cell_hash(i, j, 2, seed) & 1
+        variant = cell_hash(i, j, 3 + down, seed) & 1
+        rhombus = table[down, variant, bottom + 2 * left + 4 * diagonal]
+        maps.append(rhombus[..., 0] * 4 + rhombus[..., 1])
+    return np.stack(maps, axis=-1).astype(np.uint8)

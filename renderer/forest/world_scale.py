@@ -1,0 +1,21 @@
+"""Sizes of the forest's world, shared by its bakes, techniques and renderer."""
+
+from __future__ import annotations
+
+NODES = 512
+"""Nodes a side of the terrain grid."""
+
+CELL = 8.0
+"""Metres between two nodes."""
+
+CANOPY_HEIGHT = 20.0
+"""Thickness of the canopy layer [m]."""
+
+TILE_SIDE = 40.0
+"""Side of the triangular tiles [m]."""
+
+VOXEL = 0.625
+"""Side of a voxel of the pattern [m]."""
+
+REACH = 9000.0
+"""Distance [m] beyond which nothing of the forest is drawn."""

@@ -1,0 +1,263 @@
+"""The facade that the server, the command line and notebooks see: states in, pictures out."""
+
+from __future__ import annotations
+
+import threading
+from collections import OrderedDict
+from collections.abc import Callable, Mapping
+from concurrent.futures import Executor, Future
+from pathlib import Path
+from typing import Any
+
+from renderer.core.baking import Progress, bake_key
+from renderer.core.cache import AssetStore, Cache
+from renderer.core.errors import InputError
+from renderer.core.params import merge, set_path, validate
+from renderer.core.registry import phenomena, phenomenon, techniques
+from renderer.core.technique import Bake, BakedArrays
+from renderer.core.work import Workers
+from renderer.gl.thread import GLThread
+from renderer.picture import Frame, Picture
+from renderer.view import Painter, View
+from renderer.world.state import SceneState, migrate, samples_of
+
+Report = Callable[[Progress], None]
+
+KEPT_IN_MEMORY = 24
+"""Baked results that stay in memory; what one state needs is well below."""
+
+__all__ = ["Frame", "Picture", "Preparation", "Session", "View"]
+
+
+class Preparation:
+    """Bakes on their way.
+
+    Attributes:
+        future: done when the state may be drawn.
+    """
+
+    def __init__(self, future: Future[None], cancel: Callable[[], None]) -> None:
+        self.future = future
+        self.cancel = cancel
+
+
+class Session:
+    """One per process: the GL thread, the cache, the bakes and the views.
+
+    Args:
+        cache: of precomputations; the user's own by default.
+        executor: runs the bakes; local worker processes by default, any standard `Executor` otherwise.
+        assets: uploaded files.
+    """
+
+    def __init__(
+        self, cache: Cache | None = None, executor: Executor | None = None, assets: AssetStore | None = None
+    ) -> None:
+        self.cache = cache or Cache()
+        self.assets = assets or AssetStore()
+        self.gl = GLThread()
+        self._workers = Workers(executor)
+        self._painter = Painter(self.gl)
+        self._loaded: OrderedDict[str, BakedArrays] = OrderedDict()
+        self._lock = threading.Lock()
+        self._views = 0
+
+    def scenes(self) -> list[dict[str, Any]]:
+        """Name, title, help and presets of every scene."""
+        return [
+            {
+                "name": p.name,
+                "title": p.title,
+                "help": p.help,
+                "presets": [
+                    {"name": name, "title": preset.title, "help": preset.help} for name, preset in p.presets.items()
+                ],
+            }
+            for p in phenomena().values()
+        ]
+
+    def describe(self, scene: str) -> dict[str, Any]:
+        """Schema, defaults, presets and slots of a scene, for the page and the command line.
+
+        Raises:
+            InputError: there is no such scene.
+        """
+        found = phenomenon(scene)
+        presets = {
+            name: {
+                "title": preset.title,
+                "help": preset.help,
+                "document": self.state(scene, name).model_dump(mode="json"),
+            }
+            for name, preset in found.presets.items()
+        }
+        slots = [
+            {
+                "name": slot.name,
+                "title": slot.title,
+                "help": slot.help,
+                "contract": slot.contract,
+                "default": slot.default,
+                "techniques": [self._technique(scene, slot.name, kind) for kind in techniques(scene, slot.name)],
+            }
+            for slot in found.slots
+        ]
+        return {
+            "name": found.name,
+            "title": found.title,
+            "help": found.help,
+            "schema": found.state.model_json_schema(),
+            "defaults": self.state(scene).model_dump(mode="json"),
+            "presets": presets,
+            "slots": slots,
+        }
+
+    def state(
+        self,
+        scene: str,
+        preset: str | None = None,
+        sets: Mapping[str, Any] | None = None,
+        document: dict[str, Any] | None = None,
+    ) -> SceneState:
+        """A checked state: the scene's defaults, then a preset, a document and single values over them.
+
+        Raises:
+            InputError, InvalidDocument: naming the field.
+        """
+        found = phenomenon(scene)
+        made: dict[str, Any] = found.state().model_dump(mode="json")
+        if preset is not None:
+            if preset not in found.presets:
+                raise InputError("preset", f"{scene} has no such preset", ", ".join(found.presets))
+            made = merge(made, found.presets[preset].patch)
+        if document is not None:
+            made = merge(made, migrate(document))
+        for path, value in (sets or {}).items():
+            made = set_path(made, path, value)
+        return validate(found.state, made)  # type: ignore[return-value]
+
+    def validate(self, document: Any) -> SceneState:
+        """Check a whole document; fields it leaves out take their defaults.
+
+        Raises:
+            InputError, InvalidDocument: naming the field.
+        """
+        current = migrate(document)
+        scene = current.get("scene")
+        if not isinstance(scene, str):
+            raise InputError("scene", "a state names its scene", ", ".join(phenomena()))
+        return validate(phenomenon(scene).state, current)  # type: ignore[return-value]
+
+    def prepared(self, state: SceneState) -> bool:
+        """Whether the state can be drawn at once: all it needs is in memory."""
+        with self._lock:
+            return all(bake_key(bake) in self._loaded for bake in self._bakes(state))
+
+    def expected_seconds(self, state: SceneState) -> float:
+        """What baking the state will take on two cores; 0 where the cache has it all."""
+        return sum(bake.seconds for bake in self._bakes(state) if bake_key(bake) not in self.cache)
+
+    def prepare(self, state: SceneState, on_progress: Report | None = None) -> Preparation:
+        """Bake what the state needs, or take it from the cache; nobody waits on this thread."""
+        bakes = self._bakes(state)
+        task = self._workers.run_all(bakes, self.cache, on_progress)
+        done: Future[None] = Future()
+
+        def settle(finished: Future[dict[str, Any]]) -> None:
+            failure = None if finished.cancelled() else finished.exception()
+            if finished.cancelled():
+                done.cancel()
+            elif failure is not None:
+                done.set_exception(failure)
+            else:
+                self._keep(bakes, finished.result())
+                done.set_result(None)
+
+        task.future.add_done_callback(settle)
+        return Preparation(done, task.cancel)
+
+    def render(self, state: SceneState, width: int, height: int, on_progress: Report | None = None) -> Picture:
+        """Bake what is missing and draw the picture that `state.quality` asks for; blocks.
+
+        Args:
+            state: a checked state.
+            width, height: in pixels.
+            on_progress: told of bakes.
+
+        Raises:
+            LimitError: larger than this machine can draw.
+        """
+        if not self.prepared(state):
+            self.prepare(state, on_progress).future.result()
+        return self.gl.submit(
+            self._painter.picture, state, self._arrays(state), (width, height), samples_of(state.quality)
+        ).result()
+
+    def view(self) -> View:
+        """A canvas of its own: its mean of samples, and its mailbox on the GL thread."""
+        with self._lock:
+            self._views += 1
+            name = f"view-{self._views}"
+        return View(name, self.gl, self._painter, self._arrays)
+
+    def add_asset(self, path: Path, filename: str) -> dict[str, Any]:
+        """Check an uploaded file in a process of its own and keep it.
+
+        Returns:
+            Its `asset` (as documents name it), kind, size, units and preview.
+
+        Raises:
+            AssetError, LimitError: what is wrong with it, in words.
+        """
+        from renderer.world.upload import check_in_worker, recognise
+
+        kind = recognise(path, filename)
+        preview = check_in_worker(path, kind)
+        digest = self.assets.put(path.read_bytes(), kind, filename)
+        return {"asset": f"asset:{digest}", "kind": kind, "name": filename, "preview": preview}
+
+    def close(self) -> None:
+        """End the bakes, the views and the GL thread."""
+        self._workers.close()
+        self.gl.close()
+
+    def __enter__(self) -> Session:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def _bakes(self, state: SceneState) -> list[Bake]:
+        return phenomenon(state.scene).bakes(state)
+
+    def _keep(self, bakes: list[Bake], arrays: Mapping[str, Any]) -> None:
+        with self._lock:
+            for bake in bakes:
+                key = bake_key(bake)
+                self._loaded[key] = BakedArrays(key, arrays[bake.name])
+                self._loaded.move_to_end(key)
+            while len(self._loaded) > max(KEPT_IN_MEMORY, len(bakes)):
+                self._loaded.popitem(last=False)
+
+    def _arrays(self, state: SceneState) -> dict[str, BakedArrays]:
+        with self._lock:
+            return {bake.name: self._loaded[bake_key(bake)] for bake in self._bakes(state)}
+
+    def _technique(self, scene: str, slot: str, kind: str) -> dict[str, Any]:
+        technique = techniques(scene, slot)[kind]
+        version = self.gl.info.version
+        missing = (
+            ""
+            if version >= technique.requires
+            else (
+                f"requires OpenGL {technique.requires[0]}.{technique.requires[1]}; this machine has {version[0]}.{version[1]}"
+            )
+        )
+        return {
+            "kind": kind,
+            "title": technique.title,
+            "caption": technique.caption,
+            "paper": technique.paper,
+            "available": not missing,
+            "why_not": missing,
+        }

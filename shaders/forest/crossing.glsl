@@ -1,0 +1,45 @@
+// Where a ray meets the canopy's envelope and the ground. Formulas i (heightfields), safe steps by the terrain's steepest slope.
+// Symbols: origin, direction the ray [m, unit]; t distance [m]; gap height above the canopy's top [m].
+
+// Height above the canopy divided by the fastest it can shrink per metre of ray: no step passes through.
+float step_above(float gap, vec3 direction) {
+    return gap / max(terrain_steepness * length(direction.xy) - direction.z, 1e-4);
+}
+
+// Voxels that a ray crosses per metre, at most, along any axis of the sheared lattice.
+float voxel_rate(vec3 direction) {
+    float run = length(direction.xy);
+    return max(1.1547005383792515 * run, abs(direction.z) + terrain_steepness * run) / voxel_size;
+}
+
+// Where the ray may first meet the canopy, by safe steps over its upper envelope; -1 when it never does.
+float canopy_entry(vec3 origin, vec3 direction) {
+    float t = 0.0;
+    if (origin.z > scene_top) {
+        if (direction.z >= 0.0) return -1.0;
+        t = (scene_top - origin.z) / direction.z;
+    }
+    for (int i = 0; i < ENTRY_STEPS; i++) {
+        vec3 p = origin + t * direction;
+        float gap = p.z - ground_height(p.xy) - canopy_height;
+        if (gap <= 0.05 || t > scene_reach) break;
+        if (p.z > scene_top && direction.z >= 0.0) return -1.0;
+        t += max(step_above(gap, direction), 0.1);
+    }
+    return t > scene_reach ? -1.0 : t;
+}
+
+// Ground between t0 (above it) and t1 (at or below it), by regula falsi on the height above the ground.
+float ground_crossing(vec3 origin, vec3 direction, float t0, float t1) {
+    vec3 p0 = origin + t0 * direction;
+    vec3 p1 = origin + t1 * direction;
+    float a0 = p0.z - ground_height(p0.xy);
+    float a1 = p1.z - ground_height(p1.xy);
+    for (int i = 0; i < 3; i++) {
+        float t = t0 + (t1 - t0) * clamp(a0 / max(a0 - a1, 1e-6), 0.02, 0.98);
+        vec3 p = origin + t * direction;
+        float a = p.z - ground_height(p.xy);
+        if (a > 0.0) { t0 = t; a0 = a; } else { t1 = t; a1 = a; }
+    }
+    return t0 + (t1 - t0) * clamp(a0 / max(a0 - a1, 1e-6), 0.0, 1.0);
+}

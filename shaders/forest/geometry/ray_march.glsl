@@ -1,0 +1,39 @@
+// Ray marching of the canopy layer, front to back, with early stop and empty-space skipping.
+// Levoy 1990 (early stop, empty space); formulas (g). Today's way beside the thesis' slices.
+// Symbols: alpha opacity for one voxel of the level; ds step [m]; T transmittance.
+// Deviations: the step grows with the mip level; light is evaluated at a few levels of opacity (events.glsl), not at every step;
+// each ray reads nearest voxels at its own offset, whose mean over rays is trilinear interpolation.
+
+// Formulas g: front to back, T *= 1 - alpha'; alpha' = 1 - (1 - alpha)^step, a step being that share of a voxel.
+void geometry_trace(vec3 origin, vec3 direction, float t, float jitter, vec3 shift, inout Events events) {
+    float ds = geometry_step * voxel_size * exp2(events.level);
+    float rate = voxel_rate(direction) * exp2(-events.level);
+    float previous = t;
+    t += ds * jitter;
+    int found = 1;
+    for (int i = 0; i < MARCH_STEPS && found == 1; i++) {
+        vec3 p = origin + t * direction;
+        float above = p.z - ground_height(p.xy);
+        float gap = above - canopy_height;
+        bool over = gap > 0.0;
+        float h = clamp(above / canopy_height, 0.0, 1.0);
+        vec4 voxel = voxel_at(atlas_coordinate(p.xy) + shift.xy, h + shift.z, events.level);
+        bool gone = t > scene_reach || (over && direction.z >= 0.0 && p.z > scene_top);
+        found = above <= 0.0 ? 2 : gone ? 0 : 1;
+        float alpha = found == 1 && !over ? (1.0 - pow(1.0 - opacity_of(voxel), geometry_step)) * covered(foot_of(p.xy, voxel)) : 0.0;
+        float opacity = 1.0 - (1.0 - events.opacity) * (1.0 - alpha);
+        if (opacity > 1.0 - geometry_stop) {
+            opacity = 1.0;
+            found = 0;
+        }
+        add_event(events, vec4(p, h), voxel, opacity);
+        if (found == 1) {
+            previous = t;
+            t += over ? max(step_above(gap, direction), 0.5 * ds) : max(ds, (free_voxels(voxel) - 0.5) / rate);
+        }
+    }
+    if (found == 2) {
+        float hit = ground_crossing(origin, direction, previous, t);
+        add_event(events, vec4(origin + hit * direction, GROUND), vec4(0.0), 1.0);
+    }
+}

@@ -1,0 +1,34 @@
+// Depth pass of the depth shadow map. Williams 1978; Cohen 2004, section 5.1 (alpha test at 0.3).
+// Symbols: pixel texel of the map, centres at half integers; shadow_corner [m], shadow_right, shadow_up window sides [m];
+// the result is the distance [m] from the window's plane to the first voxel of opacity >= shadow_threshold, or to the ground.
+// Deviation: the voxels are met by a walk along the sun's ray instead of by rasterised sheets.
+
+#include "forest/world.glsl"
+#include "forest/crossing.glsl"
+
+vec4 shadow_depth_texel(vec2 pixel) {
+    vec2 place = pixel / shadow_resolution;
+    vec3 origin = shadow_corner + place.x * shadow_right + place.y * shadow_up;
+    vec3 direction = -sun_direction;
+    float t = canopy_entry(origin, direction);
+    if (t < 0.0) return vec4(1e9);
+    float previous = t;
+    float rate = voxel_rate(direction);
+    for (int i = 0; i < MARCH_STEPS; i++) {
+        vec3 p = origin + t * direction;
+        float above = p.z - ground_height(p.xy);
+        if (above <= 0.0) return vec4(ground_crossing(origin, direction, previous, t));
+        previous = t;
+        float gap = above - canopy_height;
+        if (gap > 0.0) {
+            if (t > scene_reach + length(origin - shadow_corner)) break;
+            t += max(step_above(gap, direction), 0.5 * voxel_size);
+            continue;
+        }
+        float h = above / canopy_height;
+        vec4 voxel = voxel_at(atlas_coordinate(p.xy), h, 0.0);
+        if (opacity_of(voxel) * covered(foot_of(p.xy, voxel)) >= shadow_threshold) return vec4(t);
+        t += max((free_voxels(voxel) - 0.5) / rate, 0.5 * voxel_size);
+    }
+    return vec4(1e9);
+}

@@ -1,0 +1,75 @@
+// The forest's world: ground, tiles, trees. Neyret & Cani 1999; Decaudin & Neyret 2004; formulas b1.
+// Symbols: xy horizontal position [m], x east, y north; g ground height [m]; h normalised canopy height; a tile_side [m];
+// uv atlas coordinates on the torus of 4 x 4 rhombi; level mip level, 0 the finest.
+// The renderer declares the samplers: heights, normals, cover, tiles, pattern_voxels, pattern_normal.
+
+// Texture coordinate of the terrain grid: node (row 0, column 0) is north-west, texture row 0 is the south.
+vec2 terrain_coordinate(vec2 xy) {
+    return xy / (terrain_cell * terrain_nodes) + 0.5;
+}
+
+// Bilinear height: one texel holds its cell's four coefficients (value at the south-west node, east, north, and both).
+float ground_height(vec2 xy) {
+    vec2 place = clamp(xy / terrain_cell + 0.5 * (terrain_nodes - 1.0), 0.0, terrain_nodes - 1.001);
+    vec2 corner = floor(place);
+    vec2 f = place - corner;
+    vec4 cell = textureLod(heights, (corner + 0.5) / terrain_nodes, 0.0);
+    return cell.x + f.x * cell.y + f.y * (cell.z + f.x * cell.w);
+}
+
+vec3 ground_normal(vec2 xy) {
+    return normalize(textureLod(normals, terrain_coordinate(xy), 0.0).xyz);
+}
+
+// Where trees may stand, 0 or 1.
+float covered(vec2 xy) {
+    return textureLod(cover, terrain_coordinate(xy), 0.0).r;
+}
+
+// Formulas b1: a triangle's tile follows from the hashed colours of its three edges. `tiles` holds the outcome for the cells in reach,
+// (4 p + q) of the upward and the downward triangle, because one fetch costs less than the four hashes.
+// Lattice: xy = u e1 + v e2, e1 = (a, 0), e2 = (a/2, a sqrt(3)/2).
+vec2 atlas_coordinate(vec2 xy) {
+    float v = xy.y * (1.1547005383792515 / tile_side);
+    vec2 lattice = vec2(xy.x / tile_side - 0.5 * v, v);
+    vec2 corner = floor(lattice);
+    vec2 f = lattice - corner;
+    vec2 both = textureLod(tiles, (corner + 0.5) / TILE_MAP, 0.0).rg;
+    float tile = floor((f.x + f.y < 1.0 ? both.x : both.y) * 255.0 + 0.5);
+    float p = floor(tile * 0.25);
+    return (vec2(p, tile - 4.0 * p) + f) * 0.25;
+}
+
+// One voxel of a level, nearest to a place (u, v, h): red green, blue opacity, foot x y, distance wood, two bytes a channel.
+vec4 voxel_at(vec2 uv, float h, float level) {
+    return textureLod(pattern_voxels, vec3(uv, h), level) * 65535.0;
+}
+
+vec2 two_bytes(float pair) {
+    float high = floor((pair + 0.5) / 256.0);
+    return vec2(high, floor(pair - 256.0 * high + 0.5));
+}
+
+float opacity_of(vec4 voxel) {
+    return min(two_bytes(voxel.y).y / 255.0, 0.99975586);
+}
+
+vec3 albedo_of(vec4 voxel) {
+    vec4 bytes = vec4(two_bytes(voxel.x), two_bytes(voxel.y));
+    return bytes.rgb / max(bytes.a, 1.0);
+}
+
+// Voxels of the level that are free all around.
+float free_voxels(vec4 voxel) {
+    return two_bytes(voxel.w).x;
+}
+
+// Foot of the tree that owns the voxel: offset in sixteenths of a metre.
+vec2 foot_of(vec2 xy, vec4 voxel) {
+    return xy + (two_bytes(voxel.z) - 128.0) * 0.0625;
+}
+
+// Slow variation of the trees' colour, from the foot of each tree.
+float tint_of(vec2 foot) {
+    return sin(foot.x * 0.37 + 1.3 * sin(foot.y * 0.11)) * sin(foot.y * 0.41 + 1.7 * sin(foot.x * 0.13));
+}
