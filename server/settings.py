@@ -144,10 +144,18 @@ def load(environment: Mapping[str, str] | None = None, **given: object) -> Setti
     document: dict[str, object] = {}
     for name in Settings.model_fields:
         if PREFIX + name.upper() in source:
-            document[name] = source[PREFIX + name.upper()]
+            document[name] = _value(source[PREFIX + name.upper()], Settings.model_fields[name].annotation)
     document.update({name: value for name, value in given.items() if value is not None})
     try:
         return validate(Settings, document)
     except InvalidDocument as failure:
         first = failure.errors[0]
         raise InputError(PREFIX + first.field.upper(), first.message, first.allowed) from None
+
+
+def _value(text: str, annotation: object) -> object:
+    """A variable's text as the number its field wants; other text stays, for validation to refuse in words."""
+    try:
+        return annotation(text) if annotation is int or annotation is float else text
+    except ValueError:
+        return text
