@@ -59,6 +59,10 @@ class Limits(Model):
 DEFAULT_LIMITS = Limits()
 
 
+class Unsaid(AssetError):
+    """A sound file leaves out a value that its format has no place for; the user may still say it."""
+
+
 def check_file(path: Path, limits: Limits) -> bytes:
     """The first 64 bytes of a file that exists and is not too large.
 

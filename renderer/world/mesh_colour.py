@@ -8,6 +8,7 @@ import numpy as np
 import trimesh
 
 from renderer.core.errors import AssetError, LimitError
+from renderer.world.image import srgb_decode
 from renderer.world.limits import Limits
 
 CHUNK = 65_536
@@ -17,11 +18,6 @@ _UP = [((i + 1 / 3) / 4, (j + 1 / 3) / 4) for i in range(4) for j in range(4 - i
 _DOWN = [((i + 2 / 3) / 4, (j + 2 / 3) / 4) for i in range(3) for j in range(3 - i)]
 SAMPLE_POINTS = np.array(_UP + _DOWN).T
 """Where a face's texture is read: centres of the 16 triangles it splits into, as weights of corners 2 and 3."""
-
-
-def linear(srgb: np.ndarray) -> np.ndarray:
-    """Linear reflectance of sRGB values in [0, 1] (IEC 61966-2-1, section 5.2)."""
-    return np.where(srgb <= 0.04045, srgb / 12.92, ((srgb + 0.055) / 1.055) ** 2.4)
 
 
 def face_colours(
@@ -52,7 +48,7 @@ def face_colours(
     """
     count = len(geometry.faces)
     visual: Any = geometry.visual  # trimesh's own union: `kind` says which it is
-    decode = (lambda values: values) if gltf else linear
+    decode = (lambda values: values) if gltf else srgb_decode
     if visual.kind == "face":
         return decode(visual.face_colors[:, :3] / 255.0), ()
     if visual.kind == "vertex":
@@ -103,7 +99,7 @@ def _texels(picture: Any, limits: Limits) -> tuple[np.ndarray, bool]:
         rgba = np.asarray(picture.convert("RGBA"))
     except (OSError, ValueError, SyntaxError) as failure:
         raise AssetError("texture", "is a damaged or truncated picture") from failure
-    table = linear(np.arange(256) / 255.0).astype(np.float32)
+    table = srgb_decode(np.arange(256) / 255.0).astype(np.float32)
     return table[rgba[..., :3]], bool((rgba[..., 3] < 128).any())
 
 

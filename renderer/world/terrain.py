@@ -11,7 +11,6 @@ from functools import cache
 from pathlib import Path
 
 import numpy as np
-from matplotlib import cbook
 from scipy import ndimage
 
 from renderer.core.errors import AssetError, LimitError
@@ -53,6 +52,8 @@ def default_terrain() -> Terrain:
     degree, longitude by the cosine of the latitude stored as `ymin`), as `dx = 74.266 m`, `dy = 92.667 m`: 0.5 % off
     the ellipsoid, kept so that measurements on this model can be compared with those of others.
     """
+    from matplotlib import cbook  # half a second to import, which only this function should cost
+
     with np.load(cbook.get_sample_data("jacksboro_fault_dem.npz", asfileobj=False), allow_pickle=False) as data:
         elevation = data["elevation"].astype(np.float32)
         step = (float(data["dx"]), float(data["dy"]))

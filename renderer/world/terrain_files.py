@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import struct
 from pathlib import Path
 from typing import Any
@@ -11,9 +12,12 @@ from PIL import Image
 
 from renderer.core.errors import AssetError
 from renderer.world.arrays import npz_names, read_npz
-from renderer.world.limits import Limits, check_file
+from renderer.world.limits import Limits, Unsaid, check_file
 from renderer.world.terrain_geotiff import read_geotiff
 from renderer.world.terrain_grid import Terrain, TerrainReading, check_shape
+
+PNG_END = b"IEND\xaeB`\x82"
+"""The last chunk's name and checksum (PNG 1.2, section 11.2.5). Pixels may be whole without it, and wrong unnoticed."""
 
 FORMATS = "a GeoTIFF, a 16-bit grey PNG, or an .npz with elevation and cell_size"
 
@@ -56,7 +60,8 @@ def png_header(head: bytes) -> tuple[int, int, int, int]:
 
 
 def _read_png(path: Path, limits: Limits, reading: TerrainReading) -> Terrain:
-    width, height, depth, colour = png_header(path.read_bytes()[:64])
+    data = path.read_bytes()
+    width, height, depth, colour = png_header(data)
     if (depth, colour) != (16, 0):
         raise AssetError(
             "file",
@@ -64,12 +69,14 @@ def _read_png(path: Path, limits: Limits, reading: TerrainReading) -> Terrain:
             "16-bit grey: 8 bits would make terraces",
         )
     check_shape((height, width), limits)
+    if PNG_END not in data[-4096:]:
+        raise AssetError("file", "is a PNG cut short before its end")
     if reading.cell_size == (0.0, 0.0):
-        raise AssetError("cell_size", "is not in a PNG, so it must be said", "metres between pixels along x and y")
+        raise Unsaid("cell_size", "is not in a PNG, so it must be said", "metres between pixels along x and y")
     if reading.elevation_high <= reading.elevation_low:
-        raise AssetError("elevation_high", "must be said for a PNG and lie above elevation_low", "metres")
+        raise Unsaid("elevation_high", "must be said for a PNG and lie above elevation_low", "metres")
     try:
-        with Image.open(path, formats=["PNG"]) as picture:
+        with Image.open(io.BytesIO(data), formats=["PNG"]) as picture:
             values = np.array(picture)
     except (OSError, SyntaxError, ValueError, Image.DecompressionBombError) as failure:
         raise AssetError("file", "is a damaged or truncated PNG") from failure
@@ -94,7 +101,7 @@ def _read_npz(path: Path, limits: Limits, reading: TerrainReading) -> Terrain:
     elif reading.cell_size != (0.0, 0.0):
         cell = reading.cell_size
     else:
-        raise AssetError(
+        raise Unsaid(
             "cell_size", "is not among the arrays of the file, so it must be said", "metres between nodes (dx, dy)"
         )
     one = {name: _numbers(data[name], name, (1,))[0] for name in ("latitude", "longitude") if name in data}

@@ -16,7 +16,7 @@ import numpy as np
 import tifffile
 
 from renderer.core.errors import AssetError, InputError
-from renderer.world.limits import Limits
+from renderer.world.limits import Limits, Unsaid
 from renderer.world.terrain_crs import WEB_MERCATOR, Crs, metres_per_degree, place
 from renderer.world.terrain_grid import Terrain, TerrainReading, check_shape
 
@@ -86,9 +86,7 @@ def read_geotiff(path: Path, limits: Limits, reading: TerrainReading) -> Terrain
     grid = _grid(tags, keys)
     if grid is None:
         if reading.cell_size == (0.0, 0.0):
-            raise AssetError(
-                "cell_size", "is not in the file, so it must be said", "metres between nodes along x and y"
-            )
+            raise Unsaid("cell_size", "is not in the file, so it must be said", "metres between nodes along x and y")
         return Terrain(elevation, reading.cell_size, notes=(*notes, "the TIFF has no place on Earth"))
     if grid.step[1] > 0:  # rows run north: turn the grid over so that row 0 is the northern edge
         elevation = elevation[::-1]

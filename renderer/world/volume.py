@@ -15,7 +15,7 @@ import numpy as np
 from renderer.core.errors import AssetError, LimitError
 from renderer.core.params import Model, Vector3, param
 from renderer.world.arrays import npz_names, read_npz
-from renderer.world.limits import DEFAULT_LIMITS, Limits, check_file
+from renderer.world.limits import DEFAULT_LIMITS, Limits, Unsaid, check_file
 
 Association = Literal["file", "straight", "associated"]
 
@@ -157,7 +157,7 @@ def _length(data: dict[str, np.ndarray], reading: VolumeReading) -> float:
     if reading.reference_length > 0:
         return reading.reference_length
     if "reference_length" not in data:
-        raise AssetError(
+        raise Unsaid(
             "reference_length", "is neither in the file nor said: an opacity belongs to a length of path", "metres"
         )
     return _positive(data["reference_length"], "reference_length", 1)[0]

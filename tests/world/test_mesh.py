@@ -13,9 +13,9 @@ import trimesh
 from PIL import Image
 
 from renderer.core.errors import AssetError, LimitError
+from renderer.world.image import srgb_decode
 from renderer.world.limits import Limits
 from renderer.world.mesh import DEFAULT_COLOUR, MeshReading, is_watertight, load_mesh
-from renderer.world.mesh_colour import linear
 
 FORMATS = ("glb", "obj", "ply", "stl", "off")
 
@@ -115,21 +115,15 @@ def test_gltf_is_y_up_and_others_z_up(tmp_path: Path) -> None:
     ).all()
 
 
-def test_linear_is_the_srgb_curve() -> None:
-    """Two published points: code 188 is half the light, and the straight part meets the curve."""
-    assert linear(np.array([188 / 255]))[0] == pytest.approx(0.5029, abs=1e-4)
-    assert linear(np.array([0.04045]))[0] == pytest.approx(linear(np.array([0.040451]))[0], rel=1e-4)
-
-
 def test_painted_vertices_and_faces_become_linear_face_colours(tmp_path: Path) -> None:
     painted = box()
     painted.visual.vertex_colors = np.tile(np.array([188, 0, 255, 255], dtype=np.uint8), (8, 1))
     mesh = load_mesh(written(painted, "ply", tmp_path))
-    np.testing.assert_allclose(mesh.face_colour, np.tile(linear(np.array([188, 0, 255]) / 255), (12, 1)))
+    np.testing.assert_allclose(mesh.face_colour, np.tile(srgb_decode(np.array([188, 0, 255]) / 255), (12, 1)))
     painted = box()
     painted.visual.face_colors = np.array([[20 * k, 0, 0, 255] for k in range(12)], dtype=np.uint8)
     mesh = load_mesh(written(painted, "ply", tmp_path))
-    np.testing.assert_allclose(mesh.face_colour[:, 0], linear(20 * np.arange(12) / 255))
+    np.testing.assert_allclose(mesh.face_colour[:, 0], srgb_decode(20 * np.arange(12) / 255))
 
 
 def test_a_mesh_without_colours_is_grey(tmp_path: Path) -> None:
@@ -155,7 +149,7 @@ def test_a_texture_is_averaged_in_linear_light_under_each_face(tmp_path: Path) -
     np.testing.assert_allclose(mesh.face_colour[:, 1], 0.5 * mesh.face_colour[:, 0])
     assert (mesh.face_colour[:, 2] == 0).all()
     grey = load_mesh(quad_glb(tmp_path, picture=Image.new("RGB", (4, 4), (188, 188, 188))))
-    np.testing.assert_allclose(grey.face_colour, linear(np.array([188 / 255]))[0], rtol=1e-5)
+    np.testing.assert_allclose(grey.face_colour, srgb_decode(np.array([188 / 255]))[0], rtol=1e-5)
 
 
 def test_texture_rows_run_from_the_top(tmp_path: Path) -> None:

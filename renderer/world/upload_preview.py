@@ -1,0 +1,103 @@
+"""What a file holds, in JSON values that a person can check before it replaces anything."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+from renderer.core.params import validate
+from renderer.world.image_files import load_image
+from renderer.world.limits import Limits, Unsaid
+from renderer.world.mesh import MeshReading, load_mesh
+from renderer.world.terrain import TerrainReading, load_terrain
+from renderer.world.volume import VolumeReading, load_volume
+
+Preview = dict[str, Any]
+
+
+def terrain(path: Path, limits: Limits, reading: Mapping[str, Any]) -> Preview:
+    """Nodes, cells, extent and heights of a terrain.
+
+    Where its format has no place for cells or heights and nobody said them yet: the nodes, and what is to be said.
+    """
+    try:
+        land = load_terrain(path, limits, validate(TerrainReading, dict(reading)))
+    except Unsaid as unsaid:
+        if reading:
+            raise
+        stand_in = TerrainReading(cell_size=(1.0, 1.0), elevation_low=0.0, elevation_high=1.0)
+        nodes = load_terrain(path, limits, stand_in).elevation.shape
+        return {"rows": nodes[0], "columns": nodes[1], "still_to_say": _terrain_fields(unsaid)}
+    rows, columns = land.elevation.shape
+    return {
+        "rows": rows,
+        "columns": columns,
+        "units": "m",
+        "cell_size": list(land.cell_size),
+        "extent": list(land.size),
+        "elevation": {"lowest": float(land.elevation.min()), "highest": float(land.elevation.max())},
+        "latitude": land.latitude,
+        "longitude": land.longitude,
+        "coordinate_system": f"EPSG:{land.crs.epsg}" if land.crs and land.crs.epsg else "",
+        "notes": "; ".join(land.notes),
+    }
+
+
+def _terrain_fields(unsaid: Unsaid) -> str:
+    """Fields of the reading to be filled in; only a picture leaves its heights unsaid too."""
+    return "cell_size, elevation_low, elevation_high" if "PNG" in unsaid.message else unsaid.field
+
+
+def mesh(path: Path, limits: Limits, reading: Mapping[str, Any]) -> Preview:
+    """Counts, extent and closedness of a mesh."""
+    body = load_mesh(path, limits, validate(MeshReading, dict(reading)))
+    low, high = body.bounds
+    return {
+        "faces": len(body.faces),
+        "vertices": len(body.vertices),
+        "units": "m",
+        "extent": [float(length) for length in high - low],
+        "lowest_corner": [float(value) for value in low],
+        "watertight": body.watertight,
+        "two_sided": body.two_sided,
+        "notes": "; ".join(body.notes),
+    }
+
+
+def volume(path: Path, limits: Limits, reading: Mapping[str, Any]) -> Preview:
+    """Voxels, extent and opacity of a volume, or what is still to be said about it."""
+    try:
+        box = load_volume(path, limits, validate(VolumeReading, dict(reading)))
+    except Unsaid as unsaid:
+        if reading:
+            raise
+        shape = load_volume(path, limits, VolumeReading(reference_length=1.0)).rgba.shape
+        return {"voxels": list(shape[2::-1]), "still_to_say": unsaid.field}
+    return {
+        "voxels": list(box.rgba.shape[2::-1]),
+        "units": "m",
+        "extent": list(box.size),
+        "reference_length": box.reference_length,
+        "filled": float((box.rgba[..., 3] > 0).mean()),
+        "notes": "; ".join(box.notes),
+    }
+
+
+def image(path: Path, limits: Limits, reading: Mapping[str, Any]) -> Preview:
+    """Pixels and range of a picture; it has nothing to be said."""
+    picture = load_image(path, limits)
+    return {
+        "width": picture.shape[1],
+        "height": picture.shape[0],
+        "linear_values": {"lowest": float(picture[..., :3].min()), "highest": float(picture[..., :3].max())},
+    }
+
+
+PREVIEWS: dict[str, Callable[[Path, Limits, Mapping[str, Any]], Preview]] = {
+    "terrain": terrain,
+    "mesh": mesh,
+    "volume": volume,
+    "image": image,
+}
+"""One loader a kind; `upload.Kind` names the same."""
