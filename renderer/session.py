@@ -7,7 +7,7 @@ from collections import OrderedDict
 from collections.abc import Callable, Mapping
 from concurrent.futures import Executor, Future
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from renderer.core.baking import Progress, bake_key
 from renderer.core.cache import AssetStore, Cache
@@ -20,6 +20,9 @@ from renderer.gl.thread import GLThread
 from renderer.picture import Frame, Picture
 from renderer.view import Painter, View
 from renderer.world.state import SceneState, migrate, samples_of
+
+if TYPE_CHECKING:
+    from renderer.study.measure import Measurement
 
 Report = Callable[[Progress], None]
 
@@ -215,6 +218,29 @@ class Session:
         preview = check_in_worker(path, kind)
         digest = self.assets.put(path.read_bytes(), kind, filename)
         return {"asset": f"asset:{digest}", "kind": kind, "name": filename, "preview": preview}
+
+    @staticmethod
+    def quantities() -> list[dict[str, Any]]:
+        """What can be measured: name, title, help, schema of the arguments, files and units; needs no GL."""
+        from renderer.study import measure
+
+        return [measure.describe(name) for name in measure.names()]
+
+    @staticmethod
+    def measure(quantity: str, arguments: Mapping[str, Any], files: Mapping[str, Path] | None = None) -> Measurement:
+        """Measure a physical quantity; needs no GL.
+
+        Args:
+            quantity: one of `quantities()`.
+            arguments: a document of its declared arguments.
+            files: paths of the files that it reads, by name.
+
+        Raises:
+            InputError, InvalidDocument: naming the argument.
+        """
+        from renderer.study import measure
+
+        return measure.measure(quantity, arguments, files)
 
     def close(self) -> None:
         """End the bakes, the views and the GL thread."""

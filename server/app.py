@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from importlib.metadata import version
@@ -16,6 +17,7 @@ from server import problems, stream
 from server.facade import RenderSession
 from server.guard import Guard
 from server.hub import Hub
+from server.rendering import warm_up
 from server.routes import assets, docs, health, jobs, measure, render, scenes, study
 from server.settings import ROOT, Settings
 
@@ -32,19 +34,24 @@ class Page(StaticFiles):
         return response
 
 
-def create_app(session: RenderSession, settings: Settings) -> FastAPI:
+def create_app(session: RenderSession, settings: Settings, warm: bool = False) -> FastAPI:
     """The server's application.
 
     Args:
         session: what draws; the caller closes it after the server.
         settings: the operator's.
+        warm: precompute and draw the first scene's default state at the start, before anybody asks.
     """
 
     @asynccontextmanager
     async def lifespan(app: FastAPI) -> AsyncIterator[None]:
         hub = Hub(session, settings)
         hubs.install(app, hub)
+        warming = asyncio.create_task(warm_up(hub)) if warm else None
         yield
+        if warming is not None:
+            warming.cancel()
+            await asyncio.gather(warming, return_exceptions=True)
         await hub.close()
 
     app = FastAPI(

@@ -43,14 +43,22 @@ class Preparation(Protocol):
 class Frame(Protocol):
     """One displayed picture of a view: rgb8 (H, W, 3) uint8, row 0 at the top."""
 
-    rgb8: np.ndarray
-    width: int
-    height: int
-    samples: int
-    target_samples: int
-    converged: bool
-    render_ms: float
-    technique: str
+    @property
+    def rgb8(self) -> np.ndarray: ...
+    @property
+    def width(self) -> int: ...
+    @property
+    def height(self) -> int: ...
+    @property
+    def samples(self) -> int: ...
+    @property
+    def target_samples(self) -> int: ...
+    @property
+    def converged(self) -> bool: ...
+    @property
+    def render_ms(self) -> float: ...
+    @property
+    def technique(self) -> str: ...
 
 
 class View(Protocol):
@@ -64,27 +72,35 @@ class View(Protocol):
 class Picture(Protocol):
     """A finished picture."""
 
-    linear: np.ndarray
-    rgb8: np.ndarray
-    samples: int
-    render_ms: float
-    meta: dict[str, Any]
-
-    def encode(self, format: str) -> bytes: ...  # noqa: A002 - the facade's own word
+    @property
+    def linear(self) -> np.ndarray: ...
+    @property
+    def rgb8(self) -> np.ndarray: ...
+    @property
+    def samples(self) -> int: ...
+    @property
+    def render_ms(self) -> float: ...
+    @property
+    def meta(self) -> dict[str, Any]: ...
+    def encode(self, image_format: str, /) -> bytes: ...
 
 
 class Comparison(Protocol):
     """A technique against the reference: pictures as PNG bytes by file name, and the numbers."""
 
-    files: Mapping[str, bytes]
-    numbers: Mapping[str, Any]
+    @property
+    def files(self) -> Mapping[str, bytes]: ...
+    @property
+    def numbers(self) -> Mapping[str, Any]: ...
 
 
 class Measurement(Protocol):
     """A measured quantity: arrays by name, and what was measured (units, technique, estimated error)."""
 
-    arrays: Mapping[str, np.ndarray]
-    meta: Mapping[str, Any]
+    @property
+    def arrays(self) -> Mapping[str, np.ndarray]: ...
+    @property
+    def meta(self) -> Mapping[str, Any]: ...
 
 
 class RenderSession(Protocol):

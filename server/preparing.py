@@ -55,9 +55,12 @@ class Preparer:
         self._telling: asyncio.Task[None] | None = None
 
     def want(self, wish: Wish) -> None:
-        """Prepare this instead of anything wished before."""
+        """Prepare this instead of anything wished before; at once where nothing is to be computed."""
         self._wish = wish
-        self._wake.set()
+        if self._running is None and not self._wake.is_set() and self._hub.session.prepared(wish.state):
+            self._prepared(wish)
+        else:
+            self._wake.set()
 
     def cancel(self) -> None:
         """Stop the running precomputation, if there is one."""

@@ -4,16 +4,19 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import logging
 from collections.abc import Awaitable
 from typing import Any, TypeVar
 
 from starlette.requests import Request
 
-from renderer.core.errors import Cancelled
+from renderer.core.errors import Cancelled, UmbrageError
 from server import facade
 from server.hub import Hub
 
 T = TypeVar("T")
+WARM_SIZE = (32, 32)
+log = logging.getLogger("umbrage")
 
 
 async def draw(hub: Hub, request: Request, state: Any, width: int, height: int) -> facade.Picture:
@@ -27,12 +30,12 @@ async def draw(hub: Hub, request: Request, state: Any, width: int, height: int) 
     hub.enter_render()
     left = asyncio.create_task(_left(request))
     try:
-        preparation = await hub.call(hub.session.prepare, state)
-        try:
-            await _unless(left, asyncio.wrap_future(preparation.future))
-        except Cancelled:
-            preparation.cancel()
-            raise
+        if not await hub.call(hub.session.prepared, state):
+            preparation = await hub.call(hub.session.prepare, state)
+            try:
+                await _unless(left, asyncio.wrap_future(preparation.future))
+            finally:
+                preparation.cancel()  # no effect on what is finished; a client that left wants the rest no more
         stop = _Stop()
         drawing = asyncio.get_running_loop().run_in_executor(
             hub.renderers, hub.session.render, state, width, height, stop.check
@@ -82,3 +85,19 @@ async def _unless(left: asyncio.Task[None], work: Awaitable[T]) -> T:
     with contextlib.suppress(asyncio.CancelledError):
         await doing
     raise Cancelled("the client left before the picture was drawn")
+
+
+async def warm_up(hub: Hub) -> None:
+    """Precompute the first scene's default state and compile its programs, so that the first visitor need not wait."""
+    session = hub.session
+    try:
+        scene = str(session.scenes()[0]["name"])
+        state = await hub.call(session.state, scene, None, {"quality.kind": "draft"})
+        preparation = await hub.call(session.prepare, state)
+        try:
+            await asyncio.wrap_future(preparation.future)
+        finally:
+            preparation.cancel()
+        await asyncio.get_running_loop().run_in_executor(hub.renderers, session.render, state, *WARM_SIZE)
+    except UmbrageError as failure:
+        log.warning("the first scene is not ready: %s", failure)

@@ -77,13 +77,13 @@ def _run(hub: Hub, quantity: str, arguments: dict[str, Any]) -> facade.Measureme
     if quantity not in known:
         raise Missing("quantity", "there is no such quantity", ", ".join(known))
     names = {entry["name"] for entry in known[quantity]["files"]}
+    given = {name: value for name, value in arguments.items() if name in names and isinstance(value, str)}
     files: dict[str, FilePath] = {}
-    for name in names & set(arguments):
-        value = arguments[name]
-        if not isinstance(value, str) or not value.startswith(ASSET):
+    for name, value in given.items():
+        if not value.startswith(ASSET):
             raise InputError(name, "is a file: upload it first", "asset:HASH, from POST /api/assets")
         files[name] = hub.session.assets.get(value.removeprefix(ASSET)).path
-    plain = {name: value for name, value in arguments.items() if name not in names}
+    plain = {name: value for name, value in arguments.items() if name not in given}
     return hub.session.measure(quantity, plain, files)
 
 

@@ -23,7 +23,14 @@ def session(tmp_path: Path) -> Iterator[FakeSession]:
 
 @pytest.fixture
 def settings(tmp_path: Path) -> Settings:
-    return Settings(study=str(tmp_path / "study"), message_rate=100, upload_bytes=4096, hosts="testserver", body_bytes=65536, sessions=4)
+    return Settings(
+        study=str(tmp_path / "study"),
+        message_rate=100,
+        upload_bytes=4096,
+        hosts="testserver",
+        body_bytes=65536,
+        sessions=4,
+    )
 
 
 @pytest.fixture

@@ -1,0 +1,58 @@
+"""The command line, `umbrage`."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Sequence
+
+from renderer.core.errors import InputError, InvalidDocument, UmbrageError
+from server import cli_draw, cli_measure, cli_serve
+
+FAILED, REFUSED, INTERRUPTED = 1, 2, 130
+"""Exit codes: something of ours or of the machine, something that was asked wrongly, Ctrl-C."""
+
+
+def parser(arguments: Sequence[str]) -> argparse.ArgumentParser:
+    """The parser of every command; for a quick start, `measure` declares its options only where it is asked for."""
+    top = argparse.ArgumentParser(
+        prog="umbrage", description="Relights natural scenes in real time, and says how right each picture is."
+    )
+    commands = top.add_subparsers(dest="command", required=True, metavar="COMMAND")
+    cli_serve.add(commands)
+    cli_draw.add(commands)
+    cli_measure.add(commands, "measure" in arguments)
+    return top
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run one command; errors are sentences on stderr.
+
+    Returns:
+        the exit code.
+    """
+    words = sys.argv[1:] if arguments is None else list(arguments)
+    given = parser(words).parse_args(words)
+    try:
+        code: int = given.run(given)
+    except InvalidDocument as failure:
+        for error in failure.errors:
+            print(f"umbrage: {error}", file=sys.stderr)
+        return REFUSED
+    except InputError as failure:
+        print(f"umbrage: {failure}", file=sys.stderr)
+        return REFUSED
+    except UmbrageError as failure:
+        print(f"umbrage: {failure}", file=sys.stderr)
+        return FAILED
+    except OSError as failure:
+        print(f"umbrage: {failure.filename or 'system'}: {failure.strerror or failure}", file=sys.stderr)
+        return FAILED
+    except KeyboardInterrupt:
+        print("umbrage: interrupted", file=sys.stderr)
+        return INTERRUPTED
+    return code
+
+
+if __name__ == "__main__":
+    sys.exit(main())
