@@ -151,7 +151,7 @@ def _sample(
 ) -> None:
     """Add one sub-pixel sample of the whole picture, a few rows at a time on every thread."""
     switches = np.array([options.terrain, options.forest_on_ground, options.tree_on_tree, options.within_tree,
-                         options.light == "gouraud"])  # fmt: skip
+                         options.light == "gouraud"])
     steps = (scene.height / options.steps_per_crossing, options.longest_step * scene.voxel)
     quantum = 0.0
     if options.shadow_rays:
@@ -161,7 +161,7 @@ def _sample(
         pool.submit(rows, scene, switches, *rays, first, min(first + CHUNK, height), steps, quantum, options.seed,
                     number, total, variance)
         for first in range(0, height, CHUNK)
-    ]  # fmt: skip
+    ]
     try:
         for done, chunk in enumerate(waiting, start=1):
             chunk.result()

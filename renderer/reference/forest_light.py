@@ -198,13 +198,13 @@ def rows(scene, switches, origins, directions, behind, first, last, step_of, qua
                 status, s, tau, n = march(scene, o, d, s, tau, DEPTH_LIMIT, step, True, ALL, nowhere, record)
                 if n:
                     more, drawn = _scatter(scene, switches, o, d, record, light, n, before, step, shadow_step, quantum,
-                                           seed, pixel, used, empty, total)  # fmt: skip
+                                           seed, pixel, used, empty, total)
                     variance += more
                     used += drawn
             through = 0.0 if status == OPAQUE else math.exp(-tau)
             if status == GROUND:
                 _ground_light(scene, switches, o[0] + d[0] * s, o[1] + d[1] * s, o[2] + d[2] * s, shadow_step, empty,
-                              through, total)  # fmt: skip
+                              through, total)
                 through = 0.0
             elif status == LEFT:
                 for c in range(3):

@@ -147,7 +147,7 @@ def prepare(world: ForestWorld) -> Scene:
         safe=_safe(world.colour[..., 3]), tile=np.ascontiguousarray(world.tile, np.uint8), seed=int(world.seed),
         tint=float(world.tint_strength), ground=np.array(world.ground_albedo, np.float64),
         e_sun=np.array(world.e_sun, np.float64), e_sky=np.array(world.e_sky, np.float64),
-        sun=np.array(world.sun, np.float64))  # fmt: skip
+        sun=np.array(world.sun, np.float64))
 
 
 def _block_top(z: Floats) -> Floats:

@@ -42,7 +42,7 @@ def flat(
         "elevation": np.zeros((nodes, nodes)), "cover": np.ones((nodes, nodes)), "cell": 8.0, "canopy_height": 20.0,
         "tile_side": 40.0, "voxel": 0.625, "colour": colour, "normal": normal, "anchor": np.full_like(colour, 128),
         "tile": np.zeros((2, 2, 8, 2), np.uint8), "seed": 7, "tint_strength": 0.0, "ground_albedo": GROUND,
-        "e_sun": E_SUN, "e_sky": (0.0, 0.0, 0.0), "sun": (0.0, 0.0, 1.0)}  # fmt: skip
+        "e_sun": E_SUN, "e_sky": (0.0, 0.0, 0.0), "sun": (0.0, 0.0, 1.0)}
     given.update(changes)
     return ForestWorld(**given)
 
@@ -83,7 +83,8 @@ def grove(seed: int = 1, size: int = 128, trees: int = 3, **changes: Any) -> For
     ground = 6 * np.sin(east / 3)[None] * np.cos(east / 4)[:, None] + 6
     cover = np.repeat(np.clip(0.5 + (east[None] + 8) / 4, 0, 1), nodes, axis=0)
     given: dict[str, Any] = {
-        "nodes": nodes, "normal": normal, "anchor": anchor, "elevation": ground, "cover": cover, "tint_strength": 0.2,
-        "tile": rng.integers(0, 4, (2, 2, 8, 2)).astype(np.uint8), "e_sky": (0.5, 0.6, 0.8), "sun": sun(130, 35)}  # fmt: skip
+        "nodes": nodes, "normal": normal, "anchor": anchor, "elevation": ground, "cover": cover,
+        "tint_strength": 0.2, "tile": rng.integers(0, 4, (2, 2, 8, 2)).astype(np.uint8),
+        "e_sky": (0.5, 0.6, 0.8), "sun": sun(130, 35)}
     given.update(changes)
     return flat(alpha, **given)
