@@ -68,7 +68,7 @@ check_system() {
     { library libEGL.so.1 && library libGL.so.1; } || missing="$missing $mesa"
     [ "$what" = run ] || has_chromium || release ubuntu || missing="$missing chromium"
     # shellcheck disable=SC2086  # the names are words
-    [ -z "$missing" ] || need "System packages are missing" $missing
+    [ -z "$missing" ] || need "Umbrage misses something of the system (${missing# })" $missing
     find_python >/dev/null || fail "This system's newest Python is older than 3.11." \
         "Install Python 3.11 or newer and name it: make $what PYTHON=/path/to/python3.11"
 }
