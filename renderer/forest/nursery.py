@@ -35,7 +35,7 @@ def nursery(arguments: dict[str, Any]) -> tuple[list[Tree], np.ndarray, list[int
             continue
         for variant in range(VARIANTS):
             meshes.append(kind.sample(1000 * int(arguments["seed"]) + 100 * number + variant))
-            shares.append(weight / VARIANTS)
+            shares.append(weight)
             kinds.append(number)
     if not meshes:
         raise InputError("canopy", "has no species with a weight above 0", "a weight up to 1 for one species at least")

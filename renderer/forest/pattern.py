@@ -79,7 +79,7 @@ def voxels_of(tree: Tree, attributes: np.ndarray, standing: Standing) -> tuple[n
     low, high = np.floor(middle - half).astype(int), np.ceil(middle + half).astype(int)
     layers = min(LAYERS, int(standing.scale * tree.height / VOXEL) + 1)
     grid = Grid(np.append(low, 0) @ sides, sides, (int(high[0] - low[0]), int(high[1] - low[1]), layers))
-    return low, voxelise(tree.placed(standing.scale, standing.azimuth, standing.foot), tree.faces, attributes, grid)
+    return low, voxelise(tree.placed(standing.scale, standing.girth, standing.azimuth, standing.foot), tree.faces, attributes, grid)
 
 
 def bake_pattern(arguments: dict[str, Any], inputs: dict[str, Arrays], progress: Callable[[float, str], None]) -> Arrays:
@@ -100,7 +100,7 @@ def bake_pattern(arguments: dict[str, Any], inputs: dict[str, Arrays], progress:
     """
     progress(0.0, "growing trees")
     meshes, weights, kinds = nursery(arguments)
-    standing = plant(meshes, weights, float(arguments["density"]), int(arguments["seed"]))
+    standing = plant(meshes, kinds, weights, float(arguments["density"]), int(arguments["seed"]))
     attributes = [np.concatenate([tree.colour, tree.wood[:, None]], axis=1).astype(np.float32) for tree in meshes]
     atlas = Atlas.empty()
     with ThreadPoolExecutor(2) as pool:

@@ -12,6 +12,12 @@ GOLDEN_ANGLE = np.pi * (3 - np.sqrt(5))
 """Divergence between successive branches [rad], as in most plants (Vogel 1979)."""
 
 
+Part = tuple[np.ndarray, np.ndarray]
+"""Vertices (V, 3) [m] and faces (F, 3)."""
+
+Colour = tuple[float, float, float]
+
+
 @dataclass(frozen=True)
 class Tree:
     """A mesh standing at the origin, z up.
@@ -42,9 +48,9 @@ class Tree:
         leaves = self.vertices[self.faces[~self.wood]].mean(axis=1) if not self.wood.all() else self.vertices
         return float(np.quantile(np.hypot(leaves[:, 0], leaves[:, 1]), 0.9))
 
-    def placed(self, scale: float, azimuth: float, foot: np.ndarray) -> np.ndarray:
-        """Vertices scaled, turned clockwise by `azimuth` [rad] and moved to `foot` (2,) [m]."""
-        cos, sin = np.cos(azimuth) * scale, np.sin(azimuth) * scale
+    def placed(self, scale: float, girth: float, azimuth: float, foot: np.ndarray) -> np.ndarray:
+        """Vertices scaled (across by `girth` times as much), turned clockwise by `azimuth` [rad] and moved to `foot` (2,) [m]."""
+        cos, sin = np.cos(azimuth) * scale * girth, np.sin(azimuth) * scale * girth
         x, y, z = self.vertices.T
         return np.stack([cos * x + sin * y + foot[0], cos * y - sin * x + foot[1], scale * z], axis=1)
 
@@ -118,23 +124,23 @@ def leaves(base: np.ndarray, along: np.ndarray, normal: np.ndarray, width: np.nd
     return vertices, np.concatenate([first + [0, 2, 1], first + [0, 3, 2]])
 
 
-def join(wood: Sequence[tuple[np.ndarray, np.ndarray]], foliage: Sequence[tuple[np.ndarray, np.ndarray]],
-         bark: tuple[float, float, float], green: tuple[float, float, float], spread: float, rng: np.random.Generator) -> Tree:
+def join(wood: Sequence[Part], foliage: Sequence[Part], bark: Sequence[Colour], green: Colour, spread: float,
+         rng: np.random.Generator) -> Tree:
     """One tree of its parts.
 
     Args:
-        wood, foliage: (vertices, faces) of each part. bark, green: linear albedos.
-        spread: standard deviation of the brightness from leaf to leaf, as a share.
+        wood, foliage: (vertices, faces) of each part. bark: linear albedo of each wooden part. green: of all leaves.
+        spread: standard deviation of the brightness from face to face, as a share.
     """
-    vertices, faces, first = [], [], 0
-    for part_vertices, part_faces in (*wood, *foliage):
-        vertices.append(part_vertices)
-        faces.append(part_faces + first)
-        first += len(part_vertices)
-    is_wood = np.concatenate([np.full(len(f), n < len(wood)) for n, f in enumerate(faces)])
-    shade = np.clip(rng.normal(1.0, spread, len(is_wood)), 1 - 2.5 * spread, 1 + 2.5 * spread)[:, None]
-    colour = np.where(is_wood[:, None], bark, green) * shade
-    return Tree(np.concatenate(vertices), np.concatenate(faces).astype(np.int64), np.clip(colour, 0, 1).astype(np.float32), is_wood)
+    parts = [*wood, *foliage]
+    firsts = np.cumsum([0] + [len(vertices) for vertices, _ in parts])
+    faces = np.concatenate([part + first for (_, part), first in zip(parts, firsts, strict=False)])
+    counts = [len(part) for _, part in parts]
+    colour = np.repeat(np.array([*bark, *[green] * len(foliage)]), counts, axis=0)
+    shade = np.clip(rng.normal(1.0, spread, len(faces)), 1 - 2.5 * spread, 1 + 2.5 * spread)[:, None]
+    is_wood = np.repeat(np.arange(len(parts)) < len(wood), counts)
+    return Tree(np.concatenate([vertices for vertices, _ in parts]), faces.astype(np.int64),
+                np.clip(colour * shade, 0, 1).astype(np.float32), is_wood)
 
 
 def outwards(points: np.ndarray, centre: np.ndarray, rng: np.random.Generator, up: float, disorder: float) -> np.ndarray:

@@ -7,6 +7,7 @@ import numpy as np
 from renderer.forest.tree import GOLDEN_ANGLE, Species, Tree, join, leaves, outwards, tubes, unit
 
 BARK = (0.42, 0.40, 0.36)
+TWIG_BARK = (0.10, 0.07, 0.05)
 GREEN = (0.085, 0.15, 0.04)
 BRANCHES = 60
 TWIGS = 7
@@ -23,7 +24,7 @@ def grow(rng: np.random.Generator, height: float, crown_radius: float) -> Tree:
     branches = tubes(axis, (0.010 + 0.014 * length)[:, None] * np.linspace(1, 0.25, axis.shape[1]), 3)
     twigs = _twigs(rng, axis, length, height)
     wood = [trunk, branches, tubes(twigs, np.full(twigs.shape[:2], 0.007) * np.linspace(1, 0.5, twigs.shape[1]), 3)]
-    return join(wood, [_leaves(rng, twigs, height)], BARK, GREEN, 0.2, rng)
+    return join(wood, [_leaves(rng, twigs, height)], [BARK, TWIG_BARK, TWIG_BARK], GREEN, 0.2, rng)
 
 
 def _branches(rng: np.random.Generator, stem: np.ndarray, height: float, crown_radius: float) -> tuple[np.ndarray, np.ndarray]:

@@ -31,7 +31,8 @@ def grow(rng: np.random.Generator, height: float, crown_radius: float) -> Tree:
     # So few twigs are modelled that their sum is too slender a stem: stretch the radii from the twigs' to a forest oak's.
     radii = TIP_RADIUS + (radii - TIP_RADIUS) * (STEM_RADIUS * height - TIP_RADIUS) / (radii[0] - TIP_RADIUS)
     foliage = _foliage(rng, points, parents, radii, height)
-    return join(_limbs(points, parents, radii), [foliage], BARK, GREEN, 0.18, rng)
+    limbs = _limbs(points, parents, radii)
+    return join(limbs, [foliage], [BARK] * len(limbs), GREEN, 0.18, rng)
 
 
 def _buds(rng: np.random.Generator, height: float, crown_radius: float) -> np.ndarray:

@@ -29,7 +29,7 @@ def grow(rng: np.random.Generator, height: float, crown_radius: float) -> Tree:
     length = np.maximum(crown_radius * profile * rng.uniform(0.74, 1.04, len(foot)), 0.12)
     axis = _branch_axes(stem, height, foot, azimuth, length, rise)
     branches = tubes(axis, 0.012 + 0.012 * length[:, None] * (1 - np.linspace(0, 0.95, axis.shape[1])), 3)
-    return join([trunk, branches], [_sprays(rng, axis, length, height), _leader(rng, stem)], BARK, NEEDLES, 0.16, rng)
+    return join([trunk, branches], [_sprays(rng, axis, length, height), _leader(rng, stem)], [BARK, BARK], NEEDLES, 0.16, rng)
 
 
 def _branch_axes(stem: np.ndarray, height: float, foot: np.ndarray, azimuth: np.ndarray, length: np.ndarray, rise: np.ndarray) -> np.ndarray:
