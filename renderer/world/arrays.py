@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import struct
 import zipfile
 import zlib
 from collections.abc import Collection
@@ -16,6 +18,9 @@ from renderer.core.errors import AssetError, LimitError
 MAX_MEMBERS = 64
 """An archive of ours holds a handful of arrays; more is no .npz of this kind."""
 
+MAX_DIRECTORY = 16_384
+"""Bytes of an archive's directory: 64 members of 46 bytes and a name each take some 5,000."""
+
 MAX_HEADER = 4096
 """Characters of an .npy header: a plain shape and type need about a hundred."""
 
@@ -27,6 +32,7 @@ def npz_names(path: Path) -> list[str]:
         AssetError: not a zip archive, or one with more members than an .npz of ours can have.
     """
     try:
+        _check_directory(path)
         with zipfile.ZipFile(path) as archive:
             names = archive.namelist()
     except (zipfile.BadZipFile, OSError, ValueError, NotImplementedError) as failure:
@@ -34,6 +40,23 @@ def npz_names(path: Path) -> list[str]:
     if len(names) > MAX_MEMBERS:
         raise AssetError("file", f"holds {len(names)} members", f"at most {MAX_MEMBERS}")
     return [name.removesuffix(".npy") for name in names if name.endswith(".npy")]
+
+
+def _check_directory(path: Path) -> None:
+    """Refuse an archive by the size of its directory, which zipfile would hold whole before any of it can be counted.
+
+    The end record is asked for where NumPy leaves it: in the last 22 bytes, without comment and without the 64-bit
+    locator that could contradict it (PKWARE APPNOTE 6.3.10, sections 4.3.15 and 4.3.16).
+    """
+    with path.open("rb") as stream:
+        length = stream.seek(0, os.SEEK_END)
+        stream.seek(max(length - 42, 0))
+        tail = stream.read()
+    if tail[-22:-18] != b"PK\5\6" or tail[-2:] != b"\0\0" or tail[-42:-38] == b"PK\6\7":
+        raise AssetError("file", "is no complete .npz archive")
+    directory = struct.unpack("<I", tail[-10:-6])[0]
+    if directory > MAX_DIRECTORY:
+        raise AssetError("file", f"has an archive directory of {directory:,} bytes", f"at most {MAX_DIRECTORY:,}")
 
 
 def read_npz(path: Path, wanted: Collection[str], max_bytes: int) -> dict[str, np.ndarray]:

@@ -92,7 +92,7 @@ def mesh_format(data: bytes, name: str = "") -> str | None:
         return "stl"
     if len(data) >= 84 and len(data) == 84 + 50 * struct.unpack("<I", data[80:84])[0]:
         return "stl"
-    if b"\0" not in head and re.search(rb"(?m)^\s*v\s+[-+.0-9]", head):
+    if b"\0" not in head and re.search(rb"(?m)^[ \t]*v[ \t]+[-+.0-9]", head):
         return "obj"
     return "stl" if name.lower().endswith(".stl") else None
 
@@ -121,8 +121,8 @@ def parse_mesh(data: bytes, limits: Limits, name: str = "") -> Parsed:
         elif kind == "stl":
             _check_stl(data, limits)
         else:
-            _check_count(len(re.findall(rb"(?m)^\s*f\s", data)), limits.faces, "faces")
-            _check_count(len(re.findall(rb"(?m)^\s*v\s", data)), limits.vertices, "vertices")
+            _check_count(len(re.findall(rb"(?m)^[ \t]*f[ \t]", data)), limits.faces, "faces")
+            _check_count(len(re.findall(rb"(?m)^[ \t]*v[ \t]", data)), limits.vertices, "vertices")
         nothing_else = _NothingElse()
         with warnings.catch_warnings(), np.errstate(all="ignore"):
             warnings.simplefilter("ignore")
@@ -151,10 +151,10 @@ def _promised(data: bytes, kind: str, limits: Limits) -> int:
     if kind == "ply":
         if "end_header" not in head:
             raise AssetError("file", "is cut short within its PLY header")
-        counts = {name: int(count) for name, count in re.findall(r"(?m)^element (\w+) (\d{1,18})\s*$", head)}
+        counts = {name: int(count) for name, count in re.findall(r"(?m)^element (\w+) (\d{1,18})[ \t\r]*$", head)}
         vertices, faces = counts.get("vertex", 0), counts.get("face", 0)
     else:
-        numbers = re.match(r"\s*C?OFF\s+(?:#.*\s+)*(\d{1,18})\s+(\d{1,18})", head)
+        numbers = re.match(r"\s*C?OFF\s+(\d{1,18})\s+(\d{1,18})", re.sub(r"#[^\n]*", "", head))
         if numbers is None:
             raise AssetError("file", "is cut short within its OFF header")
         vertices, faces = int(numbers.group(1)), int(numbers.group(2))

@@ -135,7 +135,7 @@ def _metres(values: np.ndarray, tags: dict[int, Any], keys: dict[int, int]) -> t
             if _fits(nodata, values.dtype)
             else np.zeros(values.shape, bool)
         ] = np.nan
-    metadata = str(tags.get(GDAL_METADATA, ""))[:100_000]
+    metadata = str(tags.get(GDAL_METADATA, ""))[:20_000]
     scale, offset = (_gdal_number(metadata, role) for role in ("scale", "offset"))
     if scale is not None or offset is not None:
         elevation = elevation * np.float32(1.0 if scale is None else scale) + np.float32(offset or 0.0)

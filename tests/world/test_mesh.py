@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import io
-import json
-import struct
 from pathlib import Path
 
 import numpy as np
@@ -16,78 +13,9 @@ from renderer.core.errors import AssetError, LimitError
 from renderer.world.image import srgb_decode
 from renderer.world.limits import Limits
 from renderer.world.mesh import DEFAULT_COLOUR, MeshReading, is_watertight, load_mesh
+from tests.world.meshes import box, quad_glb, written
 
 FORMATS = ("glb", "obj", "ply", "stl", "off")
-
-
-def box() -> trimesh.Trimesh:
-    """A box 1 x 2 x 3 m, its lowest corner at (10, 20, 30)."""
-    return trimesh.creation.box(
-        extents=(1, 2, 3), transform=trimesh.transformations.translation_matrix((10.5, 21, 31.5))
-    )
-
-
-def written(mesh: trimesh.Trimesh | trimesh.Scene, kind: str, folder: Path) -> Path:
-    path = folder / f"mesh.{kind}"
-    mesh.export(path)
-    return path
-
-
-def quad_glb(
-    folder: Path,
-    *,
-    base: tuple[float, ...] = (1, 1, 1, 1),
-    picture: Image.Image | None = None,
-    image_uri: str = "",
-    double_sided: bool = False,
-    edit=None,
-) -> Path:
-    """A square in the file's xy plane made by hand, so that trimesh's writer is not its own referee."""
-    position = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], dtype="<f4").tobytes()
-    uv = np.array([[0, 1], [1, 1], [1, 0], [0, 0]], dtype="<f4").tobytes()
-    index = np.array([0, 1, 2, 0, 2, 3], dtype="<u2").tobytes()
-    stream = io.BytesIO()
-    if picture is not None:
-        picture.save(stream, "PNG")
-    parts = [position, uv, index, stream.getvalue()]
-    views, blob = [], b""
-    for part in parts:
-        views.append({"buffer": 0, "byteOffset": len(blob), "byteLength": len(part)})
-        blob += part + b"\0" * (-len(part) % 4)
-    material: dict = {"pbrMetallicRoughness": {"baseColorFactor": base}, "doubleSided": double_sided}
-    document: dict = {
-        "asset": {"version": "2.0"},
-        "scene": 0,
-        "scenes": [{"nodes": [0]}],
-        "nodes": [{"mesh": 0}],
-        "meshes": [{"primitives": [{"attributes": {"POSITION": 0, "TEXCOORD_0": 1}, "indices": 2, "material": 0}]}],
-        "accessors": [
-            {"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 0]},
-            {"bufferView": 1, "componentType": 5126, "count": 4, "type": "VEC2"},
-            {"bufferView": 2, "componentType": 5123, "count": 6, "type": "SCALAR"},
-        ],
-        "bufferViews": views[:3],
-        "buffers": [{"byteLength": len(blob)}],
-        "materials": [material],
-    }
-    if picture is not None or image_uri:
-        material["pbrMetallicRoughness"]["baseColorTexture"] = {"index": 0}
-        document["textures"] = [{"source": 0}]
-        document["images"] = [{"uri": image_uri} if image_uri else {"bufferView": 3, "mimeType": "image/png"}]
-        document["bufferViews"] = views
-    if edit is not None:
-        edit(document)
-    text = json.dumps(document).encode()
-    text += b" " * (-len(text) % 4)
-    path = folder / "quad.glb"
-    path.write_bytes(
-        struct.pack("<4sII", b"glTF", 2, 28 + len(text) + len(blob))
-        + struct.pack("<I4s", len(text), b"JSON")
-        + text
-        + struct.pack("<I4s", len(blob), b"BIN\0")
-        + blob
-    )
-    return path
 
 
 @pytest.mark.parametrize("kind", FORMATS)
@@ -237,89 +165,3 @@ def test_watertight_needs_agreement_on_the_outside() -> None:
     assert not is_watertight(solid.vertices, flipped)
     soup = solid.vertices[solid.faces].reshape(-1, 3)
     assert is_watertight(soup, np.arange(len(soup)).reshape(-1, 3))
-
-
-@pytest.mark.parametrize(
-    ("name", "text", "field"),
-    [
-        ("no_faces.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\n", "faces"),
-        ("no_faces.off", b"OFF\n3 0 0\n0 0 0\n1 0 0\n0 1 0\n", "faces"),
-        ("no_faces.stl", b"solid nothing\nendsolid nothing\n", "faces"),
-        (
-            "no_faces.ply",
-            b"ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n"
-            b"element face 0\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n",
-            "faces",
-        ),
-        ("binary.stl", b"\0" * 84, "faces"),
-        ("flat.obj", b"v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n", "faces"),
-        ("nan.obj", b"v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", ""),
-        ("nan.off", b"OFF\n3 1 0\nnan 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", "vertices"),
-        ("inf.off", b"OFF\n3 1 0\ninf 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", "vertices"),
-        ("far.off", b"OFF\n3 1 0\n1e30 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", "vertices"),
-        ("index.off", b"OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 7\n", "file"),
-        ("index.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n", "file"),
-        ("short.off", b"OFF\n3 2 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", "faces"),
-        ("text.obj", b"hello, I am a letter\n", "file"),
-        ("empty.obj", b"", "file"),
-        ("old.glb", struct.pack("<4sIIII", b"glTF", 1, 20, 0, 0x4E4F534A), "file"),
-    ],
-)
-def test_what_is_no_mesh_is_refused_by_its_field(name: str, text: bytes, field: str, tmp_path: Path) -> None:
-    path = tmp_path / name
-    path.write_bytes(text)
-    with pytest.raises(AssetError) as refusal:
-        load_mesh(path)
-    assert field in ("", refusal.value.field)
-
-
-def test_headers_that_claim_too_much_are_refused_before_anything_is_held(tmp_path: Path) -> None:
-    cases = {
-        "vast.ply": b"ply\nformat binary_little_endian 1.0\nelement vertex 178956970\nproperty float x\n"
-        b"property float y\nproperty float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n",
-        "vast.off": b"OFF\n178956970 1 0\n",
-    }
-    for name, data in cases.items():
-        (tmp_path / name).write_bytes(data)
-        with pytest.raises(LimitError, match=r"vertices.*178,956,970"):
-            load_mesh(tmp_path / name)
-
-    def vast(document: dict) -> None:
-        document["accessors"].append({"componentType": 5126, "count": 178_956_970, "type": "VEC3"})
-
-    with pytest.raises(LimitError, match="vertices"):
-        load_mesh(quad_glb(tmp_path, edit=vast))
-    with pytest.raises(AssetError, match="KHR_draco_mesh_compression"):
-        load_mesh(quad_glb(tmp_path, edit=lambda d: d.update(extensionsRequired=["KHR_draco_mesh_compression"])))
-
-
-def test_a_vast_texture_is_refused_before_it_is_decoded(tmp_path: Path) -> None:
-    with pytest.raises(LimitError, match=r"texture.*3,000 x 3,000"):
-        load_mesh(quad_glb(tmp_path, picture=Image.new("1", (3000, 3000))), Limits(texture_pixels=1_000_000))
-
-
-@pytest.mark.parametrize("kind", FORMATS)
-def test_a_truncated_mesh_is_refused_and_never_half_a_mesh(kind: str, tmp_path: Path) -> None:
-    """OBJ has no counts and no end: a cut there may leave a smaller valid mesh, so it need only not break."""
-    data = written(box(), kind, tmp_path).read_bytes()
-    path = tmp_path / f"cut.{kind}"
-    for tenth in range(10):
-        path.write_bytes(data[: len(data) * tenth // 10])
-        if kind == "obj":
-            try:
-                assert len(load_mesh(path).faces) <= 12
-            except AssetError:
-                continue
-        else:
-            with pytest.raises(AssetError):
-                load_mesh(path)
-
-
-def test_random_bytes_behind_every_mark_give_words(tmp_path: Path) -> None:
-    rng = np.random.Generator(np.random.PCG64(200))
-    for mark in (b"", b"glTF", b"ply\n", b"OFF ", b"solid facet", b'{"asset":{"version":"2.0"}', b"v 0 0 0\nf "):
-        for _ in range(6):
-            path = tmp_path / "noise.stl"
-            path.write_bytes(mark + rng.bytes(200))
-            with pytest.raises(AssetError):
-                load_mesh(path)

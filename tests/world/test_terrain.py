@@ -155,9 +155,7 @@ def test_a_filled_hole_stays_within_its_rim() -> None:
         (np.zeros((3, 3)), (1.0, math.nan), "cell_size"),
     ],
 )
-def test_no_terrain_is_refused_by_its_field(
-    elevation: np.ndarray, cell: tuple[float, float], field: str
-) -> None:
+def test_no_terrain_is_refused_by_its_field(elevation: np.ndarray, cell: tuple[float, float], field: str) -> None:
     with pytest.raises(AssetError) as refusal:
         checked(Terrain(elevation.astype(np.float32), cell))
     assert refusal.value.field == field

@@ -93,15 +93,15 @@ def test_archives_of_other_arrays_name_what_they_hold(tmp_path: Path) -> None:
 
 
 def test_previews_say_size_units_and_extent(samples: dict[str, Path]) -> None:
-    """The whole way, through the process, for one file of each kind."""
+    """Two kinds the whole way through the process, which the others share."""
     land = check_in_worker(samples["terrain"], "terrain")
     assert (land["rows"], land["columns"], land["cell_size"], land["extent"]) == (5, 6, [7, 8], [35, 32])
     assert land["elevation"] == {"lowest": 0, "highest": 29}
     body = check_in_worker(samples["glb"], "mesh")
     assert (body["faces"], body["extent"], body["watertight"]) == (12, pytest.approx([1, 1, 1]), True)
-    box = check_in_worker(samples["volume"], "volume")
+    box = PREVIEWS["volume"](samples["volume"], Limits(), {})
     assert (box["voxels"], box["extent"], box["reference_length"]) == ([4, 3, 2], [2, 1.5, 1], 0.5)
-    assert check_in_worker(samples["png8"], "image")["width"] == 4
+    assert PREVIEWS["image"](samples["png8"], Limits(), {})["width"] == 4
 
 
 def test_what_a_format_cannot_say_is_asked_for(samples: dict[str, Path], tmp_path: Path) -> None:
