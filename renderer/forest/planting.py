@@ -28,7 +28,7 @@ later find the gaps that the earlier left."""
 SPACING = 0.88
 """Distance of two stems against the sum of their crown radii: crowns of a closed canopy interlock."""
 
-CORNER_RADIUS = 3.4
+CORNER_RADIUS = 6.0
 """Distance from the corner [m] up to which its own trees stand; the edges' trees begin beyond."""
 
 Rule = Callable[[np.ndarray, np.ndarray], np.ndarray]
