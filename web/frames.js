@@ -30,13 +30,14 @@ export class Frames {
     const arrived = performance.now();
     const { header, image } = parse(buffer);
     this.link.ack(header.sequence);
-    let bitmap;
-    try {
-      bitmap = await createImageBitmap(new Blob([image], { type: MIME[header.codec] }));
-    } catch {
-      this.stats.damaged += 1;
-      return;
-    }
+    this.stats.arrive();
+    const bitmap = await createImageBitmap(new Blob([image], { type: MIME[header.codec] })).catch(() => null);
+    this.stats.decoding -= 1;
+    if (bitmap) this.draw(header, bitmap, buffer.byteLength, arrived);
+    else this.stats.damaged += 1;
+  }
+
+  draw(header, bitmap, bytes, arrived) {
     const last = this.latest.get(header.stream) ?? -1;
     if (header.sequence < last) {
       bitmap.close();
@@ -47,6 +48,6 @@ export class Frames {
     bitmap.close();
     const drawn = performance.now();
     const inputs = header.stream === 0 ? this.link.drawn(header.version) : [];
-    this.stats.record(header, buffer.byteLength, drawn - arrived, drawn, inputs);
+    this.stats.record(header, bytes, drawn - arrived, drawn, inputs);
   }
 }

@@ -103,7 +103,7 @@ async function opened({ detail: welcome }) {
 function message({ detail }) {
   if (detail.type === "progress") notices.working(detail);
   else if (detail.type === "ready") notices.working(null);
-  else if (detail.type === "idle") stats.idle = true;
+  else if (detail.type === "idle") stats.told = true;
   else if (detail.type === "error") refused(detail);
 }
 

@@ -11,7 +11,8 @@ export class Stats extends EventTarget {
     this.frames = 0;
     this.bytes = 0;
     this.damaged = 0;
-    this.idle = false;
+    this.told = false;
+    this.decoding = 0;
     this.last = null;
     this.recent = [];
   }
@@ -19,7 +20,6 @@ export class Stats extends EventTarget {
   record(header, bytes, decode, now, inputs) {
     this.frames += 1;
     this.bytes += bytes;
-    this.idle = false;
     for (const time of inputs) this.latencies.push(now - time);
     if (this.latencies.length > KEEP) this.latencies.splice(0, this.latencies.length - KEEP);
     this.recent.push({ now, bytes });
@@ -28,6 +28,17 @@ export class Stats extends EventTarget {
     const cost = header.render_ms + header.encode_ms + decode;
     this.last = { ...header, bytes, decode, latency, network: latency === null ? null : Math.max(0, latency - cost), at: now };
     this.dispatchEvent(new Event("frame"));
+  }
+
+  /** A frame arrived and is being decoded. */
+  arrive() {
+    this.told = false;
+    this.decoding += 1;
+  }
+
+  /** Whether the server said that nothing more comes, and all that came is drawn. */
+  get idle() {
+    return this.told && this.decoding === 0;
   }
 
   /** Pictures drawn in the last second. */
