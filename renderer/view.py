@@ -102,7 +102,8 @@ class View:
         if self._sums is None:
             self._sums = Accumulator(gl, *size)
             gl.at_close(self._sums)
-        self._sums.resize(*size)
+        if self._sums.size != size:
+            self._sums.resize(*size)
         wanted = samples_of(state.quality)
         drawn = state.model_copy(
             update={"view": state.view.model_copy(update={"exposure": 0.0, "tone_curve": "linear"}), "quality": None}

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from renderer.core.params import defines, uniform_declarations
 from renderer.core.registry import glsl_file
-from renderer.forest.state import SLOTS, Ground
+from renderer.forest.state import Ground
 from renderer.forest.textures import TILE_MAP
 from renderer.gl.source import Source, assemble
 from renderer.world.camera import CAMERA_DECLARATIONS
@@ -15,10 +15,13 @@ from renderer.world.sky import SKY_DECLARATIONS
 
 if TYPE_CHECKING:
     from renderer.forest.state import ForestState
-    from renderer.forest.technique import ForestTechnique, SunPass
+    from renderer.forest.technique import ForestTechnique
 
 ENTRY_STEPS = 128
 """Safe steps a ray may take over the canopy before it meets it."""
+
+SCOUT_BLOCK = 8
+"""Pixels a side of the blocks whose way to the canopy is found once for all their rays."""
 
 MARCH_STEPS = 512
 """Steps a ray may take inside the canopy layer."""
@@ -32,6 +35,7 @@ uniform sampler2D cover;
 uniform sampler3D pattern_voxels;
 uniform sampler3D pattern_normal;
 uniform sampler2D tiles;
+uniform sampler2D scout;          // m: where the rays of a block of pixels begin, row 0 the top
 uniform float terrain_cell;       // m
 uniform float terrain_nodes;
 uniform float terrain_steepness;  // greatest rise over run
@@ -58,11 +62,17 @@ void main() {
     camera_ray(corner + pixel_offset, origin, direction);
     float noise = fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715))));
     vec4 jitter = fract(noise * vec4(1.0, 7.0, 13.0, 29.0) + vec4(0.0, 0.5, 0.25, 0.75) + sample_shift * JITTER_TURNS);
-    radiance = forest_radiance(origin, direction, jitter);
+    float start = textureLod(scout, (floor((corner + 0.5) / SCOUT_BLOCK) + 0.5) / vec2(textureSize(scout, 0)), 0.0).r;
+    radiance = forest_radiance(origin, direction, start, jitter);
 #if BACKGROUND_SKY == 1
     radiance.rgb += (1.0 - radiance.a) * (sky_radiance(direction) + sky_sun_disc(direction));
     radiance.a = 1.0;
 #endif
+}"""
+
+SCOUT_BODY = """layout(location = 0) out vec4 distance_found;
+void main() {
+    distance_found = vec4(scout_distance(gl_FragCoord.xy - 0.5));
 }"""
 
 PASS_BODY = """layout(location = 0) out vec4 texel;
@@ -73,49 +83,49 @@ void main() {
 
 def frame_source(state: ForestState) -> Source:
     """The fragment stage of a frame."""
-    chosen = tuple(state.techniques().items())
+    chosen = tuple((slot, type(t), tuple(defines(t, slot).items())) for slot, t in state.techniques().items())
     return _frame(chosen, state.view.background == "sky")
 
 
+Chosen = tuple[tuple[str, type["ForestTechnique"], tuple[tuple[str, str], ...]], ...]
+
+
 @functools.lru_cache(maxsize=256)
-def _frame(chosen: tuple[tuple[str, ForestTechnique], ...], sky: bool) -> Source:
-    files = [
-        "lib/pixel.glsl",
-        "lib/camera.glsl",
-        "lib/sky.glsl",
-        "forest/world.glsl",
-        "forest/crossing.glsl",
-        "forest/events.glsl",
-    ]
-    files += [glsl_file("forest", slot, technique.kind) for slot, technique in chosen]
+def _frame(chosen: Chosen, sky: bool) -> Source:
+    """Composed for techniques and their build parameters: live ones move without a new program."""
+    files = ["lib/pixel.glsl", "lib/camera.glsl", "lib/sky.glsl"]
+    files += ["forest/world.glsl", "forest/crossing.glsl", "forest/events.glsl"]
+    files += [glsl_file("forest", slot, technique.model_fields["kind"].default) for slot, technique, _ in chosen]
     files += ["forest/shade.glsl", "forest/radiance.glsl"]
     declarations = [CAMERA_DECLARATIONS, SKY_DECLARATIONS, WORLD_DECLARATIONS, uniform_declarations(Ground, "ground")]
-    macros: dict[str, str | int] = {
+    macros = _limits() | {"BACKGROUND_SKY": int(sky)}
+    for slot, technique, build in chosen:
+        declarations += [f"uniform {kind} {slot}_{name};" for name, kind in technique.textures.items()]
+        declarations += [uniform_declarations(technique, slot), *technique.extra_declarations]
+        macros.update(build)
+    return assemble(files, defines=macros, declarations="\n".join(declarations), body=FRAME_BODY)
+
+
+@functools.lru_cache(maxsize=64)
+def pass_source(slot: str, name: str, glsl: str, declarations: tuple[str, ...]) -> Source:
+    """The fragment stage of a pass drawn from the sun, `glsl`, with the uniforms it declares."""
+    text = "\n".join([WORLD_DECLARATIONS, uniform_declarations(Ground, "ground"), *declarations])
+    return assemble([glsl], defines=_limits(), declarations=text, body=PASS_BODY % (slot, name))
+
+
+@functools.lru_cache(maxsize=1)
+def scout_source() -> Source:
+    """The fragment stage that finds where the rays of each block of pixels begin."""
+    text = "\n".join([CAMERA_DECLARATIONS, WORLD_DECLARATIONS, uniform_declarations(Ground, "ground")])
+    files = ["lib/camera.glsl", "forest/world.glsl", "forest/scout.glsl"]
+    return assemble(files, defines=_limits(), declarations=text, body=SCOUT_BODY)
+
+
+def _limits() -> dict[str, str | int]:
+    return {
         "ENTRY_STEPS": ENTRY_STEPS,
         "MARCH_STEPS": MARCH_STEPS,
         "LIGHT_EVENTS": LIGHT_EVENTS,
         "TILE_MAP": f"{TILE_MAP}.0",
-        "BACKGROUND_SKY": int(sky),
+        "SCOUT_BLOCK": f"{SCOUT_BLOCK}.0",
     }
-    for slot, technique in chosen:
-        declarations += [f"uniform {kind} {slot}_{name};" for name, kind in technique.textures.items()]
-        declarations += [uniform_declarations(type(technique), slot), *technique.extra_declarations]
-        macros.update(defines(technique, slot))
-    return assemble(files, defines=macros, declarations="\n".join(declarations), body=FRAME_BODY)
-
-
-def pass_source(slot: str, sun_pass: SunPass) -> Source:
-    """The fragment stage of a pass drawn from the sun."""
-    return _pass(slot, sun_pass.name, sun_pass.glsl, tuple(sun_pass.declarations))
-
-
-@functools.lru_cache(maxsize=64)
-def _pass(slot: str, name: str, glsl: str, declarations: tuple[str, ...]) -> Source:
-    macros: dict[str, str | int] = {"ENTRY_STEPS": ENTRY_STEPS, "MARCH_STEPS": MARCH_STEPS, "TILE_MAP": f"{TILE_MAP}.0"}
-    text = "\n".join([WORLD_DECLARATIONS, uniform_declarations(Ground, "ground"), *declarations])
-    return assemble([glsl], defines=macros, declarations=text, body=PASS_BODY % (slot, name))
-
-
-def slots() -> tuple[str, ...]:
-    """The forest's slots in the order of composition."""
-    return SLOTS

@@ -10,12 +10,13 @@ import numpy as np
 
 from renderer.core.params import uniforms
 from renderer.core.technique import BakedArrays
-from renderer.forest.program import frame_source, pass_source
+from renderer.forest.program import SCOUT_BLOCK, frame_source, pass_source, scout_source
 from renderer.forest.textures import ground_textures, pattern_textures, tile_map
 from renderer.forest.world_scale import CANOPY_HEIGHT, CELL, NODES, REACH, TILE_SIDE, VOXEL
 from renderer.gl.context import GL
 from renderer.gl.program import AnyTexture
 from renderer.gl.resident import Resident
+from renderer.gl.source import Source
 from renderer.gl.targets import Target, run_fullscreen
 from renderer.world.camera import Orthographic, camera_uniforms
 from renderer.world.sky import sky_for, sky_uniforms
@@ -49,11 +50,12 @@ class ForestRenderer:
         """
         values = self._world(state, baked)
         textures: dict[str, AnyTexture] = self._world_textures(state, baked)
+        values |= camera_uniforms(state.camera, *size) | self._pixel(state, size)
+        textures["scout"] = self._scout(state, baked, size, values, textures)
         values |= self._shadow_pass(state, baked, size, values, textures)
         self._technique_textures(state, baked, textures)
         for slot, technique in state.techniques().items():
             values |= uniforms(technique, slot) | technique.constants()
-        values |= camera_uniforms(state.camera, *size) | self._pixel(state, size)
         values |= {"picture_size": size, "pixel_offset": offset, "sample_shift": float(sample)}
         run_fullscreen(self._gl, frame_source(state), textures | self._sky(state, baked), values)
 
@@ -159,14 +161,39 @@ class ForestRenderer:
             given |= sun_pass.uniforms
         return given
 
-    def _draw_pass(self, slot: str, sun_pass: Any, values: dict[str, Any], textures: dict[str, AnyTexture]) -> Target:
+    def _scout(
+        self,
+        state: ForestState,
+        baked: Baked,
+        size: tuple[int, int],
+        values: dict[str, Any],
+        textures: dict[str, AnyTexture],
+    ) -> AnyTexture:
+        """Where the rays of each block of pixels begin; the same until the camera or the ground changes."""
+
+        def draw() -> dict[str, Target]:
+            blocks = [-(-side // SCOUT_BLOCK) for side in size]
+            return {"target": self._draw_into(Target(self._gl, *blocks, components=1), scout_source(), values, textures)}
+
+        made = self._moment.get(("scout", state.camera, size, baked["terrain"].key), draw)["target"]
+        assert isinstance(made, Target)
+        return made.texture
+
+    def _draw_into(
+        self, target: Target, source: Source, values: dict[str, Any], textures: dict[str, AnyTexture]
+    ) -> Target:
+        """Draw a full-screen pass and come back to the framebuffer that was bound."""
         bound = self._gl.ctx.fbo
-        target = Target(self._gl, sun_pass.resolution, sun_pass.resolution, components=1)
         target.use()
         target.clear()  # so that it holds the pass whether the frame around it replaces or adds
-        run_fullscreen(self._gl, pass_source(slot, sun_pass), textures, values | dict(sun_pass.uniforms))
+        run_fullscreen(self._gl, source, textures, values)
         bound.use()
         return target
+
+    def _draw_pass(self, slot: str, sun_pass: Any, values: dict[str, Any], textures: dict[str, AnyTexture]) -> Target:
+        target = Target(self._gl, sun_pass.resolution, sun_pass.resolution, components=1)
+        source = pass_source(slot, sun_pass.name, sun_pass.glsl, sun_pass.declarations)
+        return self._draw_into(target, source, values | dict(sun_pass.uniforms), textures)
 
     @staticmethod
     def _pixel(state: ForestState, size: tuple[int, int]) -> dict[str, float]:

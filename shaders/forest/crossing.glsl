@@ -12,21 +12,22 @@ float voxel_rate(vec3 direction) {
     return max(1.1547005383792515 * run, abs(direction.z) + terrain_steepness * run) / voxel_size;
 }
 
-// Where the ray may first meet the canopy, by safe steps over its upper envelope; -1 when it never does.
-float canopy_entry(vec3 origin, vec3 direction) {
-    float t = 0.0;
-    if (origin.z > scene_top) {
-        if (direction.z >= 0.0) return -1.0;
-        t = (scene_top - origin.z) / direction.z;
-    }
-    for (int i = 0; i < ENTRY_STEPS; i++) {
+// Where the ray may first meet the canopy, by safe steps over its upper envelope from `t` on; -1 when it never does.
+float canopy_entry(vec3 origin, vec3 direction, float t) {
+    float found = t < 0.0 ? -1.0 : 0.0;
+    for (int i = 0; i < ENTRY_STEPS && found == 0.0; i++) {
         vec3 p = origin + t * direction;
         float gap = p.z - ground_height(p.xy) - canopy_height;
-        if (gap <= 0.05 || t > scene_reach) break;
-        if (p.z > scene_top && direction.z >= 0.0) return -1.0;
-        t += max(step_above(gap, direction), 0.1);
+        bool past = t > scene_reach || (p.z > scene_top && direction.z >= 0.0);
+        found = past ? -1.0 : gap <= 0.1 ? 1.0 : 0.0;
+        t += found == 0.0 ? max(step_above(gap, direction), 0.1) : 0.0;
     }
-    return t > scene_reach ? -1.0 : t;
+    return found < 0.0 ? -1.0 : t;
+}
+
+// Where a ray that starts above everything comes down to the scene's top.
+float scene_entry(vec3 origin, vec3 direction) {
+    return origin.z <= scene_top ? 0.0 : direction.z < 0.0 ? (scene_top - origin.z) / direction.z : -1.0;
 }
 
 // Ground between t0 (above it) and t1 (at or below it), by regula falsi on the height above the ground.

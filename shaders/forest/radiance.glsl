@@ -1,5 +1,5 @@
 // Radiance along a ray through the forest: the geometry slot finds where, the others what light leaves there.
-// Symbols: origin, direction the ray [m, unit]; jitter in [0, 1)^4: the start of the walk, the levels of light, the mip level, the voxel.
+// Symbols: origin, direction the ray [m, unit]; start where it may begin [m], -1 past the scene; jitter in [0, 1)^4: the start of the walk, the levels of light, the mip level, the voxel.
 
 // Offset in atlas coordinates that makes the mean of nearest voxels the trilinear interpolation of the level: a box one voxel wide.
 vec3 voxel_shift(vec4 jitter, float level) {
@@ -7,8 +7,8 @@ vec3 voxel_shift(vec4 jitter, float level) {
     return (random - 0.5) * exp2(level) * vec3(voxel_size / (4.0 * tile_side), voxel_size / (4.0 * tile_side), voxel_size / canopy_height);
 }
 
-vec4 forest_radiance(vec3 origin, vec3 direction, vec4 jitter) {
-    float t = canopy_entry(origin, direction);
+vec4 forest_radiance(vec3 origin, vec3 direction, float start, vec4 jitter) {
+    float t = canopy_entry(origin, direction, start);
     float footprint = max(t, 0.0) * pixel_angle + pixel_width;
     Events events = no_events(floor(filter_level(footprint) + jitter.z), jitter.y);
     vec3 shift = voxel_shift(jitter, events.level);

@@ -10,7 +10,7 @@ vec4 shadow_depth_texel(vec2 pixel) {
     vec2 place = pixel / shadow_resolution;
     vec3 origin = shadow_corner + place.x * shadow_right + place.y * shadow_up;
     vec3 direction = -sun_direction;
-    float t = canopy_entry(origin, direction);
+    float t = canopy_entry(origin, direction, scene_entry(origin, direction));
     if (t < 0.0) return vec4(1e9);
     float previous = t;
     float rate = voxel_rate(direction);
