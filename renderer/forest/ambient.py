@@ -17,7 +17,9 @@ def directions() -> np.ndarray:
     """Unit vectors (RINGS * AZIMUTHS, 3) that share the hemisphere's solid angle equally."""
     sine = (np.repeat(np.arange(RINGS), AZIMUTHS) + 0.5) / RINGS
     # Every other ring is turned by half a step, so that no azimuth is looked along twice.
-    azimuth = (np.tile(np.arange(AZIMUTHS), RINGS) + 0.5 * (np.repeat(np.arange(RINGS), AZIMUTHS) % 2)) * (2 * np.pi / AZIMUTHS)
+    azimuth = (np.tile(np.arange(AZIMUTHS), RINGS) + 0.5 * (np.repeat(np.arange(RINGS), AZIMUTHS) % 2)) * (
+        2 * np.pi / AZIMUTHS
+    )
     flat = np.sqrt(1 - sine**2)
     return np.stack([np.sin(azimuth) * flat, np.cos(azimuth) * flat, sine], axis=1)
 
@@ -26,7 +28,8 @@ def sky_share(extinction: np.ndarray, axes: np.ndarray, layer: float, progress: 
     """Mean transmittance from the upper hemisphere (uniform, no cosine) to each voxel's centre.
 
     Args:
-        extinction: (K, J, I) [1/m], layer 0 lowest, periodic in J and I. axes: (2, 2) sides of a voxel [m] along i and j.
+        extinction: (K, J, I) [1/m], layer 0 lowest, periodic in J and I. axes: (2, 2) sides of a voxel [m] along i
+        and j.
         layer: thickness [m]. progress: told the share done.
 
     Returns:

@@ -30,8 +30,10 @@ def _search(tops, probe, direction, step, reach, result):
     """Highest slope of the canopy from every column along one direction.
 
     Args:
-        tops: (J, I) height [m] of the highest solid voxel, far below the ground where there is none; periodic. probe: height [m] of the eye.
-        direction: (2,) voxels (i, j) a step. step: its length [m]. reach: [m]. result: slopes (J, I) float32, raised in place.
+        tops: (J, I) height [m] of the highest solid voxel, far below the ground where there is none; periodic.
+        probe: height [m] of the eye.
+        direction: (2,) voxels (i, j) a step. step: its length [m]. reach: [m]. result: slopes (J, I) float32, raised
+        in place.
     """
     rows, columns = tops.shape
     highest = max(tops.max() - probe, 0.0)
@@ -44,8 +46,8 @@ def _search(tops, probe, direction, step, reach, result):
                 # Beyond this distance not even the tallest tree can change the answer.
                 if best * along >= highest:
                     break
-                row = int(math.floor(j + n * direction[1] + 0.5)) % rows
-                column = int(math.floor(i + n * direction[0] + 0.5)) % columns
+                row = math.floor(j + n * direction[1] + 0.5) % rows
+                column = math.floor(i + n * direction[0] + 0.5) % columns
                 slope = (tops[row, column] - probe) / along
                 if slope > best:
                     best = np.float32(slope)
@@ -53,13 +55,16 @@ def _search(tops, probe, direction, step, reach, result):
 
 
 def solid_tops(opacity: np.ndarray, layer: float) -> np.ndarray:
-    """Height [m] of the centre of the highest voxel above the threshold in each column of (K, J, I); -1000 where there is none."""
+    """Height [m] of the centre of the highest voxel above the threshold in each column of (K, J, I); -1000 where
+    there is none."""
     solid = opacity > THRESHOLD
     highest = len(solid) - 1 - solid[::-1].argmax(axis=0)
     return np.where(solid.any(axis=0), (highest + 0.5) * layer, -1000.0)
 
 
-def bake_canopy_horizon(arguments: dict[str, Any], inputs: dict[str, Arrays], progress: Callable[[float, str], None]) -> Arrays:
+def bake_canopy_horizon(
+    arguments: dict[str, Any], inputs: dict[str, Arrays], progress: Callable[[float, str], None]
+) -> Arrays:
     """Smallest elevation above which every direction of a sector is clear of the canopy, at two heights.
 
     Args:
@@ -67,11 +72,13 @@ def bake_canopy_horizon(arguments: dict[str, Any], inputs: dict[str, Arrays], pr
         inputs: `pattern`, with `colour`.
 
     Returns:
-        `sectors` float32 [2, chi, J, I] [rad] from the horizontal: level 0 at the canopy's top, level 1 at `height_low`, row j along v,
-        column i along u; sector k is centred at WORLD azimuth 2 pi k / chi from north. At least 0, for the canopy goes on without end:
+        `sectors` float32 [2, chi, J, I] [rad] from the horizontal: level 0 at the canopy's top, level 1 at
+        `height_low`, row j along v, column i along u; sector k is centred at WORLD azimuth 2 pi k / chi from north.
+        At least 0, for the canopy goes on without end:
         level 0 is 0 everywhere, since nothing of the pattern stands above the canopy's top.
 
-    Source: Cohen 2004, section 3.1. The neighbours are those of the atlas; on the map they are others of the same make.
+    Source: Cohen 2004, section 3.1. The neighbours are those of the atlas; on the map they are others of the same
+    make.
     """
     sectors, low = int(arguments["sectors"]), float(arguments["height_low"])
     opacity = inputs["pattern"]["colour"][..., 3].astype(np.float32) / np.float32(255)

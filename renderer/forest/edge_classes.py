@@ -16,7 +16,8 @@ def edge_distance(direction: int, cell: int) -> np.ndarray:
     """Distance of each voxel of a rhombus to the nearest edge of a direction, in rows of voxels.
 
     Args:
-        direction: BOTTOM, LEFT, DIAGONAL, or CORNER for the distance to the lattice points (largest of the three to the lines through it).
+        direction: BOTTOM, LEFT, DIAGONAL, or CORNER for the distance to the lattice points (largest of the three to
+        the lines through it).
         cell: voxels a side of a rhombus.
 
     Returns:
@@ -39,7 +40,8 @@ def reduce_classes(volume: np.ndarray, direction: int, operation: Callable[..., 
     """Replace the surroundings of every edge by one reduction over all edges of its direction and colour.
 
     Args:
-        volume: (K, J, I) over the whole atlas. direction: as for `edge_distance`. operation: `np.mean`, `np.min` or `np.max`, with `axis`.
+        volume: (K, J, I) over the whole atlas. direction: as for `edge_distance`. operation: `np.mean`, `np.min` or
+        `np.max`, with `axis`.
 
     Returns:
         Like `volume`; meaningful within half a rhombus of the edges in question.
@@ -61,7 +63,8 @@ def blend_edges(volume: np.ndarray, inner: float, outer: float) -> np.ndarray:
     """Make a quantity that depends on its wide surroundings the same around all edges of one class.
 
     Args:
-        volume: (K, J, I) float. inner: rows of voxels from an edge within which the class mean stands alone. outer: where it fades out.
+        volume: (K, J, I) float. inner: rows of voxels from an edge within which the class mean stands alone. outer:
+        where it fades out.
 
     Returns:
         The blended volume. Where two edges are both near, at the corners, the mean over all corners stands.

@@ -54,13 +54,33 @@ class Atlas:
         shape = (LAYERS, SIZE, SIZE)
         anchor = np.zeros((*shape, 4), np.uint8)
         anchor[..., :2] = 128
-        return Atlas(np.zeros((3, *shape), np.uint16), np.zeros((*shape, 3), np.float32), np.zeros((*shape, 4), np.float32),
-                     np.zeros(shape, np.float32), np.zeros(shape, np.float32), anchor)
+        return Atlas(
+            np.zeros((3, *shape), np.uint16),
+            np.zeros((*shape, 3), np.float32),
+            np.zeros((*shape, 4), np.float32),
+            np.zeros(shape, np.float32),
+            np.zeros(shape, np.float32),
+            anchor,
+        )
 
     def add(self, standing: Standing, corner: np.ndarray, found: Voxels) -> None:
         """Lay one voxelised tree into every rhombus where it stands."""
-        lay(found.mask, found.area, found.normal, found.attributes, corner, standing.foot, AXES, standing.cells * CELL,
-            self.mask, self.normal, self.sums, self.area, self.most, self.anchor)
+        lay(
+            found.mask,
+            found.area,
+            found.normal,
+            found.attributes,
+            corner,
+            standing.foot,
+            AXES,
+            standing.cells * CELL,
+            self.mask,
+            self.normal,
+            self.sums,
+            self.area,
+            self.most,
+            self.anchor,
+        )
 
 
 def voxels_of(tree: Tree, attributes: np.ndarray, standing: Standing) -> tuple[np.ndarray, Voxels]:
@@ -79,10 +99,14 @@ def voxels_of(tree: Tree, attributes: np.ndarray, standing: Standing) -> tuple[n
     low, high = np.floor(middle - half).astype(int), np.ceil(middle + half).astype(int)
     layers = min(LAYERS, int(standing.scale * tree.height / VOXEL) + 1)
     grid = Grid(np.append(low, 0) @ sides, sides, (int(high[0] - low[0]), int(high[1] - low[1]), layers))
-    return low, voxelise(tree.placed(standing.scale, standing.girth, standing.azimuth, standing.foot), tree.faces, attributes, grid)
+    return low, voxelise(
+        tree.placed(standing.scale, standing.girth, standing.azimuth, standing.foot), tree.faces, attributes, grid
+    )
 
 
-def bake_pattern(arguments: dict[str, Any], inputs: dict[str, Arrays], progress: Callable[[float, str], None]) -> Arrays:
+def bake_pattern(
+    arguments: dict[str, Any], inputs: dict[str, Arrays], progress: Callable[[float, str], None]
+) -> Arrays:
     """Make the atlas of all tiles.
 
     Args:
@@ -92,11 +116,10 @@ def bake_pattern(arguments: dict[str, Any], inputs: dict[str, Arrays], progress:
     Returns:
         `colour` uint8 [k, j, i, 4]: linear albedo times opacity, and the opacity over one voxel's length;
         `normal` uint8 [.., 4]: unit normal in world axes (0.5 n + 0.5), and the share of the sky's light;
-        `anchor` uint8 [.., 4]: offset east and north to the tree's foot, 128 + 16 a metre; safe distance in voxels (Chebyshev distance
-        to matter); 255 in wood;
-        the same with `_1` to `_5` at coarser levels (opacity over the level's own voxel length);
-        `tile` uint8 [is_down, variant, key, 2]: see `tiles`; `trees` float32 [n, 6]: foot x and y in the atlas [m, world axes], height and
-        crown radius [m], number of the species, number of the mesh.
+        `anchor` uint8 [.., 4]: offset east and north to the tree's foot, 128 + 16 a metre; safe distance in voxels
+        (Chebyshev distance to matter); 255 in wood; the same with `_1` to `_5` at coarser levels (opacity over the
+        level's own voxel length); `tile` uint8 [is_down, variant, key, 2]: see `tiles`; `trees` float32 [n, 6]: foot
+        x and y in the atlas [m, world axes], height and crown radius [m], number of the species, number of the mesh.
     """
     progress(0.0, "growing trees")
     meshes, weights, kinds = nursery(arguments)
@@ -135,13 +158,22 @@ def _level(atlas: Atlas, progress: Callable[[float, str], None]) -> dict[str, np
     extend(full, normal, atlas.anchor, AXES)
     progress(0.6, "measuring safe distances")
     atlas.anchor[..., 2] = safe_distance(full)
-    extinction = -np.log1p(-np.minimum(encoded[..., 3].astype(np.float32) / np.float32(255), OPAQUE)) / np.float32(VOXEL)
+    extinction = -np.log1p(-np.minimum(encoded[..., 3].astype(np.float32) / np.float32(255), OPAQUE)) / np.float32(
+        VOXEL
+    )
     sky = sky_share(extinction, AXES, VOXEL, lambda share: progress(0.68 + 0.2 * share, "gathering light from the sky"))
-    return {"colour": encoded, "normal": encode_normal(np.concatenate([normal, sky[..., None]], axis=-1)), "anchor": atlas.anchor}
+    return {
+        "colour": encoded,
+        "normal": encode_normal(np.concatenate([normal, sky[..., None]], axis=-1)),
+        "anchor": atlas.anchor,
+    }
 
 
 def _list(standing: Sequence[Standing], meshes: Sequence[Tree], kinds: Sequence[int]) -> np.ndarray:
     base = lattice(TILE_SIDE)
-    rows = [(*(tree.foot + cell @ base), tree.scale * meshes[tree.tree].height, tree.spread, kinds[tree.tree], tree.tree)
-            for tree in standing for cell in tree.cells]
+    rows = [
+        (*(tree.foot + cell @ base), tree.scale * meshes[tree.tree].height, tree.spread, kinds[tree.tree], tree.tree)
+        for tree in standing
+        for cell in tree.cells
+    ]
     return np.array(rows, np.float32)

@@ -1,4 +1,5 @@
-"""Compiled inner loops of the pattern: laying one tree into the atlas, and extending normals and feet into the air around matter."""
+"""Compiled inner loops of the pattern: laying one tree into the atlas, and extending normals and feet into the air
+around matter."""
 
 from __future__ import annotations
 
@@ -10,13 +11,30 @@ ANCHOR_STEPS = 16.0
 
 
 @njit(cache=True, nogil=True)
-def lay(mask, area, normal, sums, corner, foot, axes, shifts, atlas_mask, atlas_normal, atlas_sums, atlas_area, atlas_most, atlas_anchor):
+def lay(
+    mask,
+    area,
+    normal,
+    sums,
+    corner,
+    foot,
+    axes,
+    shifts,
+    atlas_mask,
+    atlas_normal,
+    atlas_sums,
+    atlas_area,
+    atlas_most,
+    atlas_anchor,
+):
     """Add one voxelised tree to the atlas, at every rhombus where it stands.
 
     Args:
-        mask, area, normal, sums: see `Voxels`, [.., k, j, i]. corner: (2,) voxel (i, j) of their corner, from that of the rhombus.
+        mask, area, normal, sums: see `Voxels`, [.., k, j, i]. corner: (2,) voxel (i, j) of their corner, from that
+        of the rhombus.
         foot: (2,) [m] from the corner of the rhombus. axes: (2, 2) sides of a voxel [m] along i and j.
-        shifts: (S, 2) voxel (i, j) of the rhombi. atlas_*: results; `atlas_most` is the largest area that one tree has in the voxel.
+        shifts: (S, 2) voxel (i, j) of the rhombi. atlas_*: results; `atlas_most` is the largest area that one tree
+        has in the voxel.
     """
     rows, columns = atlas_area.shape[1], atlas_area.shape[2]
     for k in range(area.shape[0]):
@@ -45,10 +63,12 @@ def lay(mask, area, normal, sums, corner, foot, axes, shifts, atlas_mask, atlas_
 def extend(full, normal, anchor, axes):
     """Give the air within two rows of voxels of matter the mean normal and the nearest tree of that matter, in place.
 
-    Linear filtering mixes a surface's voxel with its empty neighbours: these must carry its normal, and point to its tree.
+    Linear filtering mixes a surface's voxel with its empty neighbours: these must carry its normal, and point to its
+    tree.
 
     Args:
-        full: (K, J, I) whether a voxel holds matter; periodic in J and I. normal: (K, J, I, 3). anchor: uint8 (K, J, I, 4).
+        full: (K, J, I) whether a voxel holds matter; periodic in J and I. normal: (K, J, I, 3). anchor: uint8 (K, J,
+        I, 4).
         axes: (2, 2) sides of a voxel [m] along i and j.
     """
     layers, rows, columns = full.shape
@@ -58,29 +78,38 @@ def extend(full, normal, anchor, axes):
                 if full[k, j, i]:
                     continue
                 for radius in range(1, 3):
-                    nearest = 1e9
-                    x, y, z = 0.0, 0.0, 0.0
-                    for dk in range(max(-radius, -k), min(radius, layers - 1 - k) + 1):
-                        for dj in range(-radius, radius + 1):
-                            for di in range(-radius, radius + 1):
-                                row, column = (j + dj) % rows, (i + di) % columns
-                                # Two rows in each of the lattice's three directions: no farther across the diagonal either.
-                                if abs(di + dj) > 2 or not full[k + dk, row, column]:
-                                    continue
-                                weight = 1.0 / (dk * dk + dj * dj + di * di)
-                                x += weight * normal[k + dk, row, column, 0]
-                                y += weight * normal[k + dk, row, column, 1]
-                                z += weight * normal[k + dk, row, column, 2]
-                                if 1.0 / weight < nearest:
-                                    nearest = 1.0 / weight
-                                    east = (di * axes[0, 0] + dj * axes[1, 0]) * ANCHOR_STEPS + anchor[k + dk, row, column, 0]
-                                    north = (di * axes[0, 1] + dj * axes[1, 1]) * ANCHOR_STEPS + anchor[k + dk, row, column, 1]
-                    if nearest < 1e9:
-                        length = max(np.sqrt(x * x + y * y + z * z), 1e-6)
-                        normal[k, j, i, 0], normal[k, j, i, 1], normal[k, j, i, 2] = x / length, y / length, z / length
-                        anchor[k, j, i, 0] = np.uint8(min(max(np.round(east), 0.0), 255.0))
-                        anchor[k, j, i, 1] = np.uint8(min(max(np.round(north), 0.0), 255.0))
+                    if _borrow(full, normal, anchor, axes, k, j, i, radius):
                         break
+
+
+@njit(cache=True, nogil=True)
+def _borrow(full, normal, anchor, axes, k, j, i, radius):
+    """Take the normal and the foot of the matter within `radius` voxels of voxel (k, j, i): whether there is any."""
+    layers, rows, columns = full.shape
+    nearest = 1000000
+    x, y, z, east, north = 0.0, 0.0, 0.0, 0.0, 0.0
+    for dk in range(max(-radius, -k), min(radius, layers - 1 - k) + 1):
+        for dj in range(-radius, radius + 1):
+            for di in range(-radius, radius + 1):
+                row, column = (j + dj) % rows, (i + di) % columns
+                # Two rows in each of the lattice's three directions: no farther across the diagonal either.
+                if abs(di + dj) > 2 or not full[k + dk, row, column]:
+                    continue
+                squared = dk * dk + dj * dj + di * di
+                x += normal[k + dk, row, column, 0] / squared
+                y += normal[k + dk, row, column, 1] / squared
+                z += normal[k + dk, row, column, 2] / squared
+                if squared < nearest:
+                    nearest = squared
+                    east = (di * axes[0, 0] + dj * axes[1, 0]) * ANCHOR_STEPS + anchor[k + dk, row, column, 0]
+                    north = (di * axes[0, 1] + dj * axes[1, 1]) * ANCHOR_STEPS + anchor[k + dk, row, column, 1]
+    if nearest == 1000000:
+        return False
+    length = max(np.sqrt(x * x + y * y + z * z), 1e-6)
+    normal[k, j, i, 0], normal[k, j, i, 1], normal[k, j, i, 2] = x / length, y / length, z / length
+    anchor[k, j, i, 0] = np.uint8(min(max(np.round(east), 0.0), 255.0))
+    anchor[k, j, i, 1] = np.uint8(min(max(np.round(north), 0.0), 255.0))
+    return True
 
 
 @njit(cache=True, nogil=True)
@@ -120,4 +149,6 @@ def _gather(source, di, dj, scale, result):
         a, b = source[(j + low_j) % rows], source[(j + low_j + 1) % rows]
         for i in range(columns):
             c, d = (i + low_i) % columns, (i + low_i + 1) % columns
-            result[j, i] += scale * ((one - fj) * ((one - fi) * a[c] + fi * a[d]) + fj * ((one - fi) * b[c] + fi * b[d]))
+            result[j, i] += scale * (
+                (one - fj) * ((one - fi) * a[c] + fi * a[d]) + fj * ((one - fi) * b[c] + fi * b[d])
+            )

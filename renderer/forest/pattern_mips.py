@@ -39,12 +39,15 @@ def coarser(colour: np.ndarray, normal: np.ndarray, anchor: np.ndarray) -> tuple
         normal: float32 (K, J, I, 4), unit normals and the sky's share. anchor: uint8 (K, J, I, 4).
 
     Returns:
-        The same at half the resolution. Opacity is meant for twice the length. Normals are averaged by opacity and made unit; feet and
-        the wood mark are those of the densest child, offsets unchanged; the safe distance is the children's least, halved.
+        The same at half the resolution. Opacity is meant for twice the length. Normals are averaged by opacity and
+        made unit; feet and the wood mark are those of the densest child, offsets unchanged; the safe distance is the
+        children's least, halved.
 
     Source: formulas b3 (directional opacity), averaged over the three axes.
     """
-    levels = [_average(_compose(colour, axis), tuple(other for other in range(3) if other != axis)) for axis in range(3)]
+    levels = [
+        _average(_compose(colour, axis), tuple(other for other in range(3) if other != axis)) for axis in range(3)
+    ]
     merged = (levels[0] + levels[1] + levels[2]) / np.float32(3)
     weight = colour[..., 3:] + np.float32(1e-4)
     direction = _average(normal[..., :3] * weight, (0, 1, 2))
@@ -64,7 +67,8 @@ def _densest(anchor: np.ndarray, opacity: np.ndarray) -> np.ndarray:
 
 
 def decode(pattern: dict[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
-    """Colour and normal arrays of a pattern as float32: colours in [0, 1], normals in [-1, 1], the sky's share in [0, 1]."""
+    """Colour and normal arrays of a pattern as float32: colours in [0, 1], normals in [-1, 1], the sky's share in
+    [0, 1]."""
     colour = pattern["colour"].astype(np.float32) / np.float32(255)
     normal = pattern["normal"].astype(np.float32) / np.float32(255)
     normal[..., :3] = normal[..., :3] * 2 - 1

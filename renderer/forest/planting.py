@@ -1,8 +1,9 @@
 """Where the trees of the pattern stand: dart throwing that keeps every rule of edge-compatible tiles.
 
-A tree whose crown comes near an edge belongs to that edge's (direction, colour) and stands in every tile that wears it; all others belong to
-one triangle and keep clear of its edges. No crown covers a corner. To keep the corners from showing as a lattice of glades, a few slim trees
-stand around them, the same at all corners, each crossing one edge at most.
+A tree whose crown comes near an edge belongs to that edge's (direction, colour) and stands in every tile that wears
+it; all others belong to one triangle and keep clear of its edges. No crown covers a corner. To keep the corners from
+showing as a lattice of glades, a few slim trees stand around them, the same at all corners, each crossing one edge
+at most.
 
 Source: Neyret & Cani 1999; Cohen 2004, section 2.2 (rules); Cook 1986 (Poisson discs by dart throwing).
 """
@@ -19,11 +20,12 @@ from renderer.forest.tree import Tree
 from renderer.forest.world_scale import TILE_SIDE, VOXEL
 
 MARGIN = 4.5 * VOXEL * np.sqrt(3) / 2
-"""Between a crown and any edge that is not its own [m]: four voxels, whose rows stand sin 60 deg apart, and a half for the snapping."""
+"""Between a crown and any edge that is not its own [m]: four voxels, whose rows stand sin 60 deg apart, and a half
+for the snapping."""
 
 GENERATIONS = (((0.84, 1.0), (0.8, 1.0), 600), ((0.66, 0.9), (0.5, 0.7), 700), ((0.4, 0.66), (0.55, 0.85), 500))
-"""Height and girth of the trees against their meshes, and the darts thrown: old trees, slender ones that were crowded, and young ones; the
-later find the gaps that the earlier left."""
+"""Height and girth of the trees against their meshes, and the darts thrown: old trees, slender ones that were
+crowded, and young ones; the later find the gaps that the earlier left."""
 
 SPACING = 0.88
 """Distance of two stems against the sum of their crown radii: crowns of a closed canopy interlock."""
@@ -34,8 +36,17 @@ CORNER_RADIUS = 6.0
 Rule = Callable[[np.ndarray, np.ndarray], np.ndarray]
 """Which of some crowns, by feet (n, 2) [m] and reach (n,) [m], may stand in a region."""
 
-_CORNERS = {BOTTOM: ((0, 0), (1, 0), (0, 1), (1, -1)), LEFT: ((0, 0), (0, 1), (1, 0), (-1, 1)), DIAGONAL: ((1, 0), (0, 1), (0, 0), (1, 1))}
-"""Lattice points of an edge's two ends and of the two triangles' other corners, from the rhombus that owns the edge."""
+_CORNERS = {
+    BOTTOM: ((0, 0), (1, 0), (0, 1), (1, -1)),
+    LEFT: ((0, 0), (0, 1), (1, 0), (-1, 1)),
+    DIAGONAL: ((1, 0), (0, 1), (0, 0), (1, 1)),
+}
+"""Lattice points of an edge's two ends and of the two triangles' other corners, from the rhombus that owns the
+edge."""
+
+
+_AROUND = np.array([(0, 1), (-np.sqrt(0.75), -0.5), (np.sqrt(0.75), -0.5)])
+"""Corners of a triangle around the origin; twice as large, it holds the unit circle."""
 
 
 @dataclass(frozen=True)
@@ -43,7 +54,8 @@ class Standing:
     """One tree of the pattern.
 
     Attributes:
-        tree: index of its mesh. scale: height against the mesh. girth: width against the height, as a share of the mesh's. azimuth: turn [rad]. foot: (2,) [m], from the corner of the rhombus.
+        tree: index of its mesh. scale: height against the mesh. girth: width against the height, as a share of the
+        mesh's. azimuth: turn [rad]. foot: (2,) [m], from the corner of the rhombus.
         cells: (S, 2) rhombi (p, q) of the atlas in which it stands.
         spread: crown radius [m]. reach: farthest of its vertices from the foot [m].
     """
@@ -58,42 +70,46 @@ class Standing:
     reach: float
 
 
-def plant(trees: Sequence[Tree], kinds: Sequence[int], weights: np.ndarray, density: float, seed: int) -> list[Standing]:
+def plant(
+    trees: Sequence[Tree], kinds: Sequence[int], weights: np.ndarray, density: float, seed: int
+) -> list[Standing]:
     """Fill the atlas with trees.
 
     Args:
-        trees: the meshes to choose from. kinds: number of each one's species. weights: their shares of the crowns' area (n,), summing to 1.
+        trees: the meshes to choose from. kinds: number of each one's species. weights: their shares of the crowns'
+        area (n,), summing to 1.
         density: 1 for a closed canopy; less spaces the crowns out. seed: of places, turns and sizes.
 
     Returns:
         The trees, those of the edges first, in an order that is the same around every edge of one colour.
     """
-    rng = np.random.Generator(np.random.PCG64(seed))
     base = lattice(TILE_SIDE)
-    darts = _Darts(np.array([tree.reach for tree in trees]), np.array([tree.crown_radius for tree in trees]), np.array(kinds),
-                   weights, SPACING / np.sqrt(density), rng)
-    around_corner = 2 * CORNER_RADIUS * np.array([(0, 1), (-np.sqrt(0.75), -0.5), (np.sqrt(0.75), -0.5)])
-    corner = darts.throw(np.argwhere(np.ones((RHOMBI, RHOMBI))), [], around_corner, _corner_rule(base))
-
-    def at_corners(corners: np.ndarray) -> list[tuple[np.ndarray, float]]:
-        return [(tree.foot + place, tree.spread) for tree in corner for place in corners]
-
+    rng = np.random.Generator(np.random.PCG64(seed))
+    reach, spread = np.array([tree.reach for tree in trees]), np.array([tree.crown_radius for tree in trees])
+    darts = _Darts(reach, spread, np.array(kinds), weights, SPACING / np.sqrt(density), rng)
+    everywhere = np.argwhere(np.ones((RHOMBI, RHOMBI)))
+    corner = darts.throw(everywhere, [], 2 * CORNER_RADIUS * _AROUND, _corner_rule(base))
     strips: dict[tuple[int, int], list[Standing]] = {}
     for direction in (BOTTOM, LEFT, DIAGONAL):
         corners = np.array(_CORNERS[direction]) @ base
         for colour in (0, 1):
             cells = np.argwhere(EDGES[direction] == colour)
-            strips[direction, colour] = darts.throw(cells, at_corners(corners), corners, _strip_rule(corners))
+            strips[direction, colour] = darts.throw(cells, _moved(corner, corners), corners, _strip_rule(corners))
     planted = corner + [tree for strip in strips.values() for tree in strip]
     for down in (0, 1):
         corners = np.array([(1, 0), (0, 1), (down, down)]) @ base
-        for p in range(RHOMBI):
-            for q in range(RHOMBI):
-                around = at_corners(corners)
-                for direction, colour, step in zip((BOTTOM, LEFT, DIAGONAL), triple(p, q, down), ((0, down), (down, 0), (0, 0)), strict=True):
-                    around += [(tree.foot + np.array(step) @ base, tree.spread) for tree in strips[direction, int(colour)]]
-                planted += darts.throw(np.array([[p, q]]), around, corners, _inside_rule(corners))
+        steps = np.array([(0, down), (down, 0), (0, 0)]) @ base
+        for cell in everywhere:
+            around = _moved(corner, corners)
+            for direction, worn in enumerate(triple(*cell, down)):
+                around += _moved(strips[direction, int(worn)], steps[direction : direction + 1])
+            planted += darts.throw(cell[None], around, corners, _inside_rule(corners))
     return planted
+
+
+def _moved(trees: list[Standing], places: np.ndarray) -> list[tuple[np.ndarray, float]]:
+    """Feet and crown radii of some trees, at each of some places (n, 2) [m] of their rhombus."""
+    return [(tree.foot + place, tree.spread) for tree in trees for place in places]
 
 
 def _segment_distance(points: np.ndarray, a: np.ndarray, b: np.ndarray) -> np.ndarray:
@@ -107,7 +123,9 @@ def _corner_rule(base: np.ndarray) -> Rule:
 
     def holds(points: np.ndarray, reach: np.ndarray) -> np.ndarray:
         crossed = np.sum([_segment_distance(points, np.zeros(2), end) < reach for end in ends], axis=0)
-        result: np.ndarray = (crossed <= 1) & (np.hypot(*points.T) > reach + VOXEL / 2) & (np.hypot(*points.T) < CORNER_RADIUS)
+        result: np.ndarray = (
+            (crossed <= 1) & (np.hypot(*points.T) > reach + VOXEL / 2) & (np.hypot(*points.T) < CORNER_RADIUS)
+        )
         return result
 
     return holds
@@ -146,12 +164,15 @@ class _Darts:
     spacing: float
     rng: np.random.Generator
 
-    def throw(self, cells: np.ndarray, around: list[tuple[np.ndarray, float]], corners: np.ndarray, rule: Rule) -> list[Standing]:
+    def throw(
+        self, cells: np.ndarray, around: list[tuple[np.ndarray, float]], corners: np.ndarray, rule: Rule
+    ) -> list[Standing]:
         """Plant one region.
 
         Args:
             cells: rhombi in which it lies. around: feet and crown radii of the trees that stand already.
-            corners: of the region (n, 2) [m]: triangles of the first two corners with each of the others. rule: which crowns it takes.
+            corners: of the region (n, 2) [m]: triangles of the first two corners with each of the others. rule:
+            which crowns it takes.
         """
         feet = np.array([foot for foot, _ in around]).reshape(-1, 2)
         spreads = np.array([spread for _, spread in around])
@@ -163,7 +184,8 @@ class _Darts:
             reach, spread = scale * girth * self.reach[tree], scale * girth * self.spread[tree]
             for n in np.flatnonzero(rule(points, reach)):
                 kind, crown = self.kinds[tree[n]], spread[n] ** 2
-                # Slim species fit where broad ones do not: without a quota they would draw the edges and corners in their own colour.
+                # Slim species fit where broad ones do not: without a quota they would draw the edges and corners in
+                # their own colour.
                 if area[kind] > share[kind] * (area.sum() + crown):
                     continue
                 gaps = np.hypot(*(feet - points[n]).T) - self.spacing * (spreads + spread[n])
@@ -171,15 +193,32 @@ class _Darts:
                     continue
                 feet, spreads = np.concatenate([feet, points[n : n + 1]]), np.append(spreads, spread[n])
                 area[kind] += crown
-                planted.append(Standing(int(tree[n]), float(scale[n]), float(girth[n]), float(azimuth[n]), points[n], cells,
-                                        float(spread[n]), float(reach[n])))
+                planted.append(
+                    Standing(
+                        int(tree[n]),
+                        float(scale[n]),
+                        float(girth[n]),
+                        float(azimuth[n]),
+                        points[n],
+                        cells,
+                        float(spread[n]),
+                        float(reach[n]),
+                    )
+                )
         return planted
 
-    def _volley(self, corners: np.ndarray, heights: tuple[float, float], girths: tuple[float, float], count: int) -> tuple[np.ndarray, ...]:
+    def _volley(
+        self, corners: np.ndarray, heights: tuple[float, float], girths: tuple[float, float], count: int
+    ) -> tuple[np.ndarray, ...]:
         """Points over the region, with the number of a mesh, its height and girth, and its turn."""
         third = corners[2 + self.rng.integers(len(corners) - 2, size=count)]
         s, t = self.rng.random((2, count, 1))
         s, t = np.where(s + t > 1, 1 - s, s), np.where(s + t > 1, 1 - t, t)
         points = corners[0] + s * (corners[1] - corners[0]) + t * (third - corners[0])
-        return (points, self.rng.choice(len(self.weights), size=count, p=self.weights), self.rng.uniform(*heights, count),
-                self.rng.uniform(*girths, count), self.rng.uniform(0, 2 * np.pi, count))
+        return (
+            points,
+            self.rng.choice(len(self.weights), size=count, p=self.weights),
+            self.rng.uniform(*heights, count),
+            self.rng.uniform(*girths, count),
+            self.rng.uniform(0, 2 * np.pi, count),
+        )

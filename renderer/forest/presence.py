@@ -19,7 +19,8 @@ def safe_distance(full: np.ndarray) -> np.ndarray:
         full: (K, J, I) whether a voxel of the atlas holds matter.
 
     Returns:
-        uint8 (K, J, I), 0 in matter, at most REACH. Distances are in whole voxels along the grid's own (sheared) axes.
+        uint8 (K, J, I), 0 in matter, at most REACH. Distances are in whole voxels along the grid's own (sheared)
+        axes.
     """
     layers, rows, _ = full.shape
     cell = rows // RHOMBI
@@ -47,8 +48,11 @@ def _any_tile(blocks: np.ndarray, upward: np.ndarray, down: int) -> np.ndarray:
     return blocks.any(axis=(0, 1)) & (~upward if down else upward)
 
 
-def _surroundings(blocks: np.ndarray, p: int, q: int, down: int, upward: np.ndarray, anything: list[np.ndarray]) -> np.ndarray:
-    """Matter in 3 x 3 rhombi around one triangle: its own, what its edges' colours allow beside it, and anything beyond."""
+def _surroundings(
+    blocks: np.ndarray, p: int, q: int, down: int, upward: np.ndarray, anything: list[np.ndarray]
+) -> np.ndarray:
+    """Matter in 3 x 3 rhombi around one triangle: its own, what its edges' colours allow beside it, and anything
+    beyond."""
     layers, cell = blocks.shape[2], blocks.shape[3]
     patch = np.empty((3, 3, layers, cell, cell), bool)  # [step along j + 1, step along i + 1]
     patch[:] = anything[0] | anything[1]

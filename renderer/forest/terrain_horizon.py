@@ -21,8 +21,9 @@ AZIMUTHS = 128
 def _sweep(heights, cell, azimuth, slopes):
     """Slope of the horizon at every node, looking along one azimuth; 0 where nothing rises above the node.
 
-    Lines run along the azimuth, one for each row or column they start from; walking against the azimuth, the hull of what was passed stays
-    on a stack whose top is the horizon. A node between two lines takes the mean of both, weighted by nearness.
+    Lines run along the azimuth, one for each row or column they start from; walking against the azimuth, the hull of
+    what was passed stays on a stack whose top is the horizon. A node between two lines takes the mean of both,
+    weighted by nearness.
 
     Args:
         heights: (N, M) [m], row 0 the northern edge. cell: side of a cell [m]. azimuth: [rad], clockwise from north.
@@ -39,7 +40,7 @@ def _sweep(heights, cell, azimuth, slopes):
     drift = minor / abs(major)
     step = cell / abs(major)
     forward = major > 0
-    extent = int(math.ceil(abs(drift) * (length - 1))) + 1
+    extent = math.ceil(abs(drift) * (length - 1)) + 1
     distance, height = np.empty(length), np.empty(length)
     result[:] = np.float32(0.0)
     for line in range(-extent, width + extent):
@@ -48,7 +49,7 @@ def _sweep(heights, cell, azimuth, slopes):
             # Walking against the azimuth: from the far end of the line towards its start.
             row = length - 1 - walked if forward else walked
             place = line + drift * (length - 1 - walked)
-            low = int(math.floor(place))
+            low = math.floor(place)
             if low < -1 or low >= width:
                 continue
             share = place - low
@@ -59,7 +60,9 @@ def _sweep(heights, cell, azimuth, slopes):
             else:
                 here = (1 - share) * grid[row, low] + share * grid[row, low + 1]
             at = -walked * step
-            while size >= 2 and (height[size - 2] - here) * (distance[size - 1] - at) >= (height[size - 1] - here) * (distance[size - 2] - at):
+            while size >= 2 and (height[size - 2] - here) * (distance[size - 1] - at) >= (height[size - 1] - here) * (
+                distance[size - 2] - at
+            ):
                 size -= 1
             if size > 0:
                 slope = (height[size - 1] - here) / (distance[size - 1] - at)
@@ -87,20 +90,24 @@ def sweep(heights: np.ndarray, cell: float, azimuth: float) -> np.ndarray:
 
 
 def sector_range(sector: int, sectors: int, azimuths: int) -> np.ndarray:
-    """Numbers of the azimuths inside a sector or on its borders; sector k's axis is azimuth k * azimuths / sectors."""
+    """Numbers of the azimuths inside a sector or on its borders; sector k's axis is azimuth k * azimuths /
+    sectors."""
     half = azimuths // sectors // 2
     middle = sector * azimuths // sectors
     return np.arange(middle - half, middle + half + 1) % azimuths
 
 
-def bake_terrain_horizon(arguments: dict[str, Any], inputs: dict[str, Arrays], progress: Callable[[float, str], None]) -> Arrays:
+def bake_terrain_horizon(
+    arguments: dict[str, Any], inputs: dict[str, Arrays], progress: Callable[[float, str], None]
+) -> Arrays:
     """Smallest elevation above which every direction of a sector is clear of the terrain.
 
     Args:
         arguments: `sectors`, 4 to 32. inputs: `terrain`, with `elevation` (N, N) [m].
 
     Returns:
-        `sectors` float32 [chi, N, N] [rad], at least 0, from the horizontal; sector k is centred at azimuth 2 pi k / chi from north.
+        `sectors` float32 [chi, N, N] [rad], at least 0, from the horizontal; sector k is centred at azimuth 2 pi k /
+        chi from north.
 
     Source: Cohen 2004, section 3.1, phi_min; formulas i for the sweep in place of his cube maps.
     """

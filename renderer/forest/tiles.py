@@ -1,9 +1,11 @@
 """Edge-compatible triangular tiles, chosen by a hash: an endless forest from one small atlas.
 
-The plane is cut into equilateral triangles. Each edge has one of two colours, hashed from its place; a triangle wears the tile of its three
-edge colours, in one of two variants, hashed from its own place. Nothing is stored, nothing repeats, and every point is reached directly.
+The plane is cut into equilateral triangles. Each edge has one of two colours, hashed from its place; a triangle
+wears the tile of its three edge colours, in one of two variants, hashed from its own place. Nothing is stored,
+nothing repeats, and every point is reached directly.
 
-Source: Neyret & Cani 1999 (triangular patterns with edge constraints); Decaudin & Neyret 2004 (texture cells of a forest).
+Source: Neyret & Cani 1999 (triangular patterns with edge constraints); Decaudin & Neyret 2004 (texture cells of a
+forest).
 """
 
 from __future__ import annotations
@@ -18,13 +20,18 @@ RHOMBI = 4
 BOTTOM, LEFT, DIAGONAL = 0, 1, 2
 """Edge directions: along e1, along e2, and from (1, 0) to (0, 1) of a lattice cell."""
 
-EDGES = np.array([
-    [[1, 0, 1, 0], [1, 0, 0, 0], [0, 1, 1, 1], [0, 0, 1, 1]],
-    [[1, 1, 1, 1], [0, 1, 0, 0], [0, 1, 0, 0], [0, 1, 0, 1]],
-    [[1, 1, 0, 1], [1, 0, 0, 0], [1, 1, 0, 1], [1, 0, 0, 0]],
-], np.uint8)
-"""Colour of the atlas' own edges, [direction, p, q], such that each of the 8 triples of colours occurs exactly twice among the 16 upward
-triangles and twice among the 16 downward ones. Found by simulated annealing; `tests/forest/test_tiles.py` proves it."""
+EDGES = np.array(
+    [
+        [[1, 0, 1, 0], [1, 0, 0, 0], [0, 1, 1, 1], [0, 0, 1, 1]],
+        [[1, 1, 1, 1], [0, 1, 0, 0], [0, 1, 0, 0], [0, 1, 0, 1]],
+        [[1, 1, 0, 1], [1, 0, 0, 0], [1, 1, 0, 1], [1, 0, 0, 0]],
+    ],
+    np.uint8,
+)
+"""Colour of the atlas' own edges, [direction, p, q], such that each of the 8 triples of colours occurs exactly twice
+among the 16 upward triangles and twice among the 16 downward ones. Found by simulated annealing;
+`tests/forest/test_tiles.py` proves
+it."""
 
 _MIX = np.array([0x8DA6B343, 0xD8163841, 0xCB1AB31F, 0x165667B1], np.uint32)
 
@@ -38,19 +45,25 @@ def cell_hash(i: np.ndarray, j: np.ndarray, purpose: int | np.ndarray, seed: int
     """32 random bits of a lattice cell, the same in numpy and GLSL.
 
     Args:
-        i, j: cell numbers, any integers. purpose: 0 to 2 an edge's direction, 3 an upward tile's variant, 4 a downward one's. seed: of the map.
+        i, j: cell numbers, any integers. purpose: 0 to 2 an edge's direction, 3 an upward tile's variant, 4 a
+        downward one's. seed: of the map.
 
     Source: C. Wellons, lowbias32, over a sum of products as in Teschner et al. 2003.
     """
     with np.errstate(over="ignore"):
-        parts = [np.asarray(value).astype(np.int64).astype(np.uint32) * factor for value, factor in zip((i, j, purpose, seed), _MIX, strict=True)]
+        parts = [
+            np.asarray(value).astype(np.int64).astype(np.uint32) * factor
+            for value, factor in zip((i, j, purpose, seed), _MIX, strict=True)
+        ]
         x = parts[0] ^ parts[1] ^ parts[2] ^ parts[3]
         x = (x ^ (x >> np.uint32(16))) * np.uint32(0x7FEB352D)
         x = (x ^ (x >> np.uint32(15))) * np.uint32(0x846CA68B)
         return x ^ (x >> np.uint32(16))
 
 
-def triple(p: np.ndarray | int, q: np.ndarray | int, down: np.ndarray | int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def triple(
+    p: np.ndarray | int, q: np.ndarray | int, down: np.ndarray | int
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Colours (bottom or top, left or right, diagonal) of the atlas' triangle in rhombus (p, q)."""
     p, q, down = np.asarray(p), np.asarray(q), np.asarray(down)
     return (EDGES[BOTTOM, p, (q + down) % RHOMBI], EDGES[LEFT, (p + down) % RHOMBI, q], EDGES[DIAGONAL, p, q])

@@ -49,7 +49,8 @@ class Tree:
         return float(np.quantile(np.hypot(leaves[:, 0], leaves[:, 1]), 0.9))
 
     def placed(self, scale: float, girth: float, azimuth: float, foot: np.ndarray) -> np.ndarray:
-        """Vertices scaled (across by `girth` times as much), turned clockwise by `azimuth` [rad] and moved to `foot` (2,) [m]."""
+        """Vertices scaled (across by `girth` times as much), turned clockwise by `azimuth` [rad] and moved to `foot`
+        (2,) [m]."""
         cos, sin = np.cos(azimuth) * scale * girth, np.sin(azimuth) * scale * girth
         x, y, z = self.vertices.T
         return np.stack([cos * x + sin * y + foot[0], cos * y - sin * x + foot[1], scale * z], axis=1)
@@ -110,11 +111,14 @@ def tubes(points: np.ndarray, radii: np.ndarray, sides: int) -> tuple[np.ndarray
     return vertices, np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])
 
 
-def leaves(base: np.ndarray, along: np.ndarray, normal: np.ndarray, width: np.ndarray | float) -> tuple[np.ndarray, np.ndarray]:
+def leaves(
+    base: np.ndarray, along: np.ndarray, normal: np.ndarray, width: np.ndarray | float
+) -> tuple[np.ndarray, np.ndarray]:
     """Flat rhombic leaves, each of two triangles.
 
     Args:
-        base: where they hang (L, 3) [m]. along: from base to tip (L, 3) [m]. normal: side that faces out of the crown (L, 3).
+        base: where they hang (L, 3) [m]. along: from base to tip (L, 3) [m]. normal: side that faces out of the
+        crown (L, 3).
         width: full width [m], one number or (L,).
     """
     across = unit(np.cross(normal, along)) * (np.broadcast_to(width, len(base)) / 2)[:, None]
@@ -124,8 +128,14 @@ def leaves(base: np.ndarray, along: np.ndarray, normal: np.ndarray, width: np.nd
     return vertices, np.concatenate([first + [0, 2, 1], first + [0, 3, 2]])
 
 
-def join(wood: Sequence[Part], foliage: Sequence[Part], bark: Sequence[Colour], green: Colour, spread: float,
-         rng: np.random.Generator) -> Tree:
+def join(
+    wood: Sequence[Part],
+    foliage: Sequence[Part],
+    bark: Sequence[Colour],
+    green: Colour,
+    spread: float,
+    rng: np.random.Generator,
+) -> Tree:
     """One tree of its parts.
 
     Args:
@@ -139,11 +149,17 @@ def join(wood: Sequence[Part], foliage: Sequence[Part], bark: Sequence[Colour], 
     colour = np.repeat(np.array([*bark, *[green] * len(foliage)]), counts, axis=0)
     shade = np.clip(rng.normal(1.0, spread, len(faces)), 1 - 2.5 * spread, 1 + 2.5 * spread)[:, None]
     is_wood = np.repeat(np.arange(len(parts)) < len(wood), counts)
-    return Tree(np.concatenate([vertices for vertices, _ in parts]), faces.astype(np.int64),
-                np.clip(colour * shade, 0, 1).astype(np.float32), is_wood)
+    return Tree(
+        np.concatenate([vertices for vertices, _ in parts]),
+        faces.astype(np.int64),
+        np.clip(colour * shade, 0, 1).astype(np.float32),
+        is_wood,
+    )
 
 
-def outwards(points: np.ndarray, centre: np.ndarray, rng: np.random.Generator, up: float, disorder: float) -> np.ndarray:
+def outwards(
+    points: np.ndarray, centre: np.ndarray, rng: np.random.Generator, up: float, disorder: float
+) -> np.ndarray:
     """Leaf normals: out of the crown, turned up to the light, and scattered.
 
     Args:

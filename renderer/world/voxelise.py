@@ -1,8 +1,8 @@
 """Voxelises triangle meshes: opacity from exact coverage, mean normal, mean colour.
 
-Sixteen sub-rays cross each voxel along each of the grid's three axes. A voxel's opacity along an axis is the share of its sub-rays that meet
-the mesh inside it; triangles are scan-converted in whole numbers with a fill rule, so that two triangles sharing an edge neither both take nor
-both miss a sub-ray.
+Sixteen sub-rays cross each voxel along each of the grid's three axes. A voxel's opacity along an axis is the share
+of its sub-rays that meet the mesh inside it; triangles are scan-converted in whole numbers with a fill rule, so that
+two triangles sharing an edge neither both take nor both miss a sub-ray.
 """
 
 from __future__ import annotations
@@ -46,7 +46,8 @@ class Voxels:
     Attributes:
         mask: uint16 [axis, k, j, i], one bit a sub-ray, set where the mesh stops it inside the voxel.
         area: float32, mesh area inside the voxel [m2], estimated from the sub-rays that meet it.
-        normal: float32 [k, j, i, 3], sum of area times unit face normal [m2], world axes, oriented by the faces' winding.
+        normal: float32 [k, j, i, 3], sum of area times unit face normal [m2], world axes, oriented by the faces'
+        winding.
         attributes: float32 [k, j, i, n], sum of area times the faces' attributes [m2].
     """
 
@@ -69,7 +70,9 @@ def opacity_of(mask: np.ndarray) -> np.ndarray:
     return (np.bitwise_count(mask).astype(np.float32).sum(axis=0) / np.float32(3 * SUB * SUB)).astype(np.float32)
 
 
-def voxelise(vertices: np.ndarray, faces: np.ndarray, attributes: np.ndarray, grid: Grid, *, solid: bool = False) -> Voxels:
+def voxelise(
+    vertices: np.ndarray, faces: np.ndarray, attributes: np.ndarray, grid: Grid, *, solid: bool = False
+) -> Voxels:
     """Voxelise a mesh.
 
     Args:
@@ -78,7 +81,8 @@ def voxelise(vertices: np.ndarray, faces: np.ndarray, attributes: np.ndarray, gr
         solid: fill the inside, for a watertight mesh; its colour there is that of no face.
 
     Raises:
-        AssetError: no faces, indices out of range, coordinates that are not finite, or `solid` for a mesh with open edges.
+        AssetError: no faces, indices out of range, coordinates that are not finite, or `solid` for a mesh with open
+        edges.
     """
     vertices, faces = np.asarray(vertices, float), np.ascontiguousarray(faces, np.int64)
     if faces.ndim != 2 or len(faces) == 0:
@@ -93,11 +97,25 @@ def voxelise(vertices: np.ndarray, faces: np.ndarray, attributes: np.ndarray, gr
         raise AssetError("mesh", "is not watertight and cannot be filled", "a closed mesh, or its surface alone")
     ni, nj, nk = grid.shape
     attributes = np.ascontiguousarray(attributes, np.float32).reshape(len(faces), -1)
-    voxels = Voxels(np.zeros((3, nk, nj, ni), np.uint16), np.zeros((nk, nj, ni), np.float32),
-                    np.zeros((nk, nj, ni, 3), np.float32), np.zeros((nk, nj, ni, attributes.shape[1]), np.float32))
+    voxels = Voxels(
+        np.zeros((3, nk, nj, ni), np.uint16),
+        np.zeros((nk, nj, ni), np.float32),
+        np.zeros((nk, nj, ni, 3), np.float32),
+        np.zeros((nk, nj, ni, attributes.shape[1]), np.float32),
+    )
     parity = np.zeros((3, nk + 1, nj + 1, ni + 1) if solid else (3, 1, 1, 1), np.uint16)
-    scan(grid.to_index(vertices), vertices, faces, attributes, np.array(grid.wrap),
-         voxels.mask, voxels.area, voxels.normal, voxels.attributes, parity)
+    scan(
+        grid.to_index(vertices),
+        vertices,
+        faces,
+        attributes,
+        np.array(grid.wrap),
+        voxels.mask,
+        voxels.area,
+        voxels.normal,
+        voxels.attributes,
+        parity,
+    )
     if solid:
         fill_solid(voxels.mask, parity)
     return voxels

@@ -7,7 +7,8 @@ from numba import njit
 
 _SUB = 4
 _STEP = 1 << 12
-"""Vertices are snapped to this many steps a sub-ray: 0.04 mm for voxels of 0.6 m, and edge functions stay exact in 64 bits."""
+"""Vertices are snapped to this many steps a sub-ray: 0.04 mm for voxels of 0.6 m, and edge functions stay exact in
+64 bits."""
 
 
 @njit(cache=True, inline="always")
@@ -18,13 +19,15 @@ def _edge(ax, ay, bx, by, px, py):
 
 @njit(cache=True, inline="always")
 def _least(ax, ay, bx, by):
-    """Least value of the edge function that belongs to a counter-clockwise triangle: the top-left rule gives each edge one owner."""
+    """Least value of the edge function that belongs to a counter-clockwise triangle: the top-left rule gives each
+    edge one owner."""
     return 0 if (by < ay or (by == ay and bx < ax)) else 1
 
 
 @njit(cache=True, inline="always")
 def _first(value, wrap):
-    """Number of the first sub-ray at or beyond a snapped coordinate (sub-rays stand in the middle of their square)."""
+    """Number of the first sub-ray at or beyond a snapped coordinate (sub-rays stand in the middle of their
+    square)."""
     first = (value + _STEP // 2 - 1) // _STEP
     return first if wrap else max(first, 0)
 
@@ -49,7 +52,8 @@ def _hits(index, snapped, face, axis, size, wrap, found):
     """Sub-rays of one axis that one face stops.
 
     Args:
-        index: vertices in voxels. snapped: the same in steps. face: three vertex numbers. found: int64 (rows, 4), result: cell i, j, k and bit; grown when too small.
+        index: vertices in voxels. snapped: the same in steps. face: three vertex numbers. found: int64 (rows, 4),
+        result: cell i, j, k and bit; grown when too small.
 
     Returns:
         How many, and the array they are in.
@@ -93,7 +97,8 @@ def scan(index, world, faces, attributes, wrap, mask, area, normal, sums, parity
         index: vertices (V, 3) in voxels. world: the same in metres. faces: (F, 3). attributes: (F, n).
         wrap: (3,) whether i, j, k are periodic.
         mask, area, normal, sums: results, see `Voxels`.
-        parity: crossings for `fill_solid`, one voxel longer than `mask` on each side; or a single voxel, when none are wanted.
+        parity: crossings for `fill_solid`, one voxel longer than `mask` on each side; or a single voxel, when none
+        are wanted.
     """
     size = np.array([mask.shape[3], mask.shape[2], mask.shape[1]])
     solid = parity.shape[1] > 1
@@ -116,7 +121,12 @@ def scan(index, world, faces, attributes, wrap, mask, area, normal, sums, parity
                 depth = found[h, axis]
                 if solid and depth < size[axis]:
                     start = max(depth + 1, 0)
-                    parity[axis, start if axis == 2 else k, start if axis == 1 else j, start if axis == 0 else i] ^= bit
+                    if axis == 0:
+                        parity[0, k, j, start] ^= bit
+                    elif axis == 1:
+                        parity[1, k, start, i] ^= bit
+                    else:
+                        parity[2, start, j, i] ^= bit
                 if depth < 0 or depth >= size[axis]:
                     continue
                 mask[axis, k, j, i] |= bit
@@ -130,7 +140,8 @@ def scan(index, world, faces, attributes, wrap, mask, area, normal, sums, parity
 
 @njit(cache=True, nogil=True)
 def fill_solid(mask, parity):
-    """Set the sub-rays that lie inside the mesh: those that crossed its surface an odd number of times before the voxel.
+    """Set the sub-rays that lie inside the mesh: those that crossed its surface an odd number of times before the
+    voxel.
 
     Args:
         mask: uint16 [axis, k, j, i], extended in place.

@@ -27,7 +27,9 @@ def grow(rng: np.random.Generator, height: float, crown_radius: float) -> Tree:
     return join(wood, [_leaves(rng, twigs, height)], [BARK, TWIG_BARK, TWIG_BARK], GREEN, 0.2, rng)
 
 
-def _branches(rng: np.random.Generator, stem: np.ndarray, height: float, crown_radius: float) -> tuple[np.ndarray, np.ndarray]:
+def _branches(
+    rng: np.random.Generator, stem: np.ndarray, height: float, crown_radius: float
+) -> tuple[np.ndarray, np.ndarray]:
     """Axes (B, 6, 3) and lengths [m]: rising steeply, spreading at the tips."""
     rise = np.linspace(0.0, 1.0, BRANCHES) ** 0.85
     foot = height * (0.27 + 0.68 * rise)
@@ -55,7 +57,9 @@ def _twigs(rng: np.random.Generator, axis: np.ndarray, length: np.ndarray, heigh
     out = unit(unit(stop - start) + rng.normal(0, 0.75, base.shape))
     size = (0.28 * np.minimum(length[branch], 2.6) + 0.14) * rng.uniform(0.7, 1.3, len(branch))
     s = np.linspace(0, 1, 4)[None, :, None]
-    twigs: np.ndarray = base[:, None] + size[:, None, None] * (out[:, None] * (s - 0.35 * s**2) + np.array([0, 0, -0.62]) * s**2)
+    twigs: np.ndarray = base[:, None] + size[:, None, None] * (
+        out[:, None] * (s - 0.35 * s**2) + np.array([0, 0, -0.62]) * s**2
+    )
     twigs[..., 2] = np.minimum(twigs[..., 2], 0.985 * height)
     return twigs
 
@@ -71,4 +75,6 @@ def _leaves(rng: np.random.Generator, twigs: np.ndarray, height: float) -> tuple
     return leaves(base, along, outwards(base, centre, rng, up=0.6, disorder=0.5), 0.13)
 
 
-SPECIES = Species("birch", "Birch", "Alternate branches at the golden angle; form after Betula pendula", (15.0, 18.0), 0.14, grow)
+SPECIES = Species(
+    "birch", "Birch", "Alternate branches at the golden angle; form after Betula pendula", (15.0, 18.0), 0.14, grow
+)

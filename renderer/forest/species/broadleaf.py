@@ -28,7 +28,8 @@ def grow(rng: np.random.Generator, height: float, crown_radius: float) -> Tree:
     """Grow a broadleaf tree of a given height and crown radius [m]."""
     points, parents = _colonise(rng, _buds(rng, height, crown_radius), height)
     radii = _pipes(parents)
-    # So few twigs are modelled that their sum is too slender a stem: stretch the radii from the twigs' to a forest oak's.
+    # So few twigs are modelled that their sum is too slender a stem: stretch the radii from the twigs' to a forest
+    # oak's.
     radii = TIP_RADIUS + (radii - TIP_RADIUS) * (STEM_RADIUS * height - TIP_RADIUS) / (radii[0] - TIP_RADIUS)
     foliage = _foliage(rng, points, parents, radii, height)
     limbs = _limbs(points, parents, radii)
@@ -36,14 +37,17 @@ def grow(rng: np.random.Generator, height: float, crown_radius: float) -> Tree:
 
 
 def _buds(rng: np.random.Generator, height: float, crown_radius: float) -> np.ndarray:
-    """Places that the branches seek (n, 3) [m]: an egg-shaped crown with lobes, denser outside, where the light is."""
+    """Places that the branches seek (n, 3) [m]: an egg-shaped crown with lobes, denser outside, where the light
+    is."""
     direction = unit(rng.normal(size=(1700, 3)))
     lobes = unit(rng.normal(size=(9, 3)) + [0, 0, 0.3])
     swell = 0.76 + 0.28 * np.exp(7 * (direction @ lobes.T - 1)).max(axis=1)
     depth = rng.uniform(0.25, 1.0, len(direction)) ** (1 / 2.2)
     low = np.where(direction[:, 2] < 0, 0.29, 0.40)
     place = direction * (depth * np.minimum(swell, 1.0))[:, None]
-    return np.stack([place[:, 0] * crown_radius, place[:, 1] * crown_radius, 0.565 * height + place[:, 2] * low * height], axis=1)
+    return np.stack(
+        [place[:, 0] * crown_radius, place[:, 1] * crown_radius, 0.565 * height + place[:, 2] * low * height], axis=1
+    )
 
 
 def _colonise(rng: np.random.Generator, buds: np.ndarray, height: float) -> tuple[np.ndarray, np.ndarray]:
@@ -109,8 +113,9 @@ def _limbs(points: np.ndarray, parents: np.ndarray, radii: np.ndarray) -> list[t
     return parts
 
 
-def _foliage(rng: np.random.Generator, points: np.ndarray, parents: np.ndarray, radii: np.ndarray,
-             height: float) -> tuple[np.ndarray, np.ndarray]:
+def _foliage(
+    rng: np.random.Generator, points: np.ndarray, parents: np.ndarray, radii: np.ndarray, height: float
+) -> tuple[np.ndarray, np.ndarray]:
     """Clusters of leaves on the thin twigs."""
     twigs = np.flatnonzero((radii < 0.03) & (parents >= 0))
     each = int(np.clip(round(LEAVES / max(len(twigs), 1)), 3, 16))
@@ -125,4 +130,6 @@ def _foliage(rng: np.random.Generator, points: np.ndarray, parents: np.ndarray, 
     return leaves(base, along, outwards(base, centre, rng, up=0.7, disorder=0.35), 0.013 * height)
 
 
-SPECIES = Species("broadleaf", "Broadleaf", "Space colonisation: Runions, Lane & Prusinkiewicz 2007", (14.5, 18.0), 0.235, grow)
+SPECIES = Species(
+    "broadleaf", "Broadleaf", "Space colonisation: Runions, Lane & Prusinkiewicz 2007", (14.5, 18.0), 0.235, grow
+)
