@@ -211,6 +211,7 @@ class Workers:
 
         Raises:
             Cancelled: the workers are closed.
+            UmbrageError: this machine starts no processes.
         """
         with self.lock:
             if self._closed:
@@ -221,7 +222,11 @@ class Workers:
                 ours, theirs = multiprocessing.Pipe()
                 self._alive = ours
                 spawn = multiprocessing.get_context("spawn")
-                self._own = ProcessPoolExecutor(self._processes, spawn, _settle, (theirs,))
+                try:
+                    self._own = ProcessPoolExecutor(self._processes, spawn, _settle, (theirs,))
+                except OSError as failure:
+                    # Semaphores live in shared memory, which a jail may lack.
+                    raise UmbrageError(f"worker processes cannot be started here: {failure}") from failure
             return self._own
 
     def discard(self, executor: Executor) -> None:
