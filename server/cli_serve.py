@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import platform
 import shutil
+import signal
 import sys
 from importlib.metadata import version
 from typing import Any
@@ -72,6 +73,8 @@ def serve(given: argparse.Namespace) -> int:
         info = session.gl.info
         print(f"Umbrage draws with {info.renderer}{' (software)' if info.software else ''}.")
         print(f"Open {address(settings, listener.getsockname()[1])}", flush=True)
+        # uvicorn ends gracefully and then raises the signal again, whose default would skip the closing of the session.
+        signal.signal(signal.SIGTERM, lambda *_: sys.exit(0))
         uvicorn.Server(config).run(sockets=[listener])
     return 0
 
