@@ -118,6 +118,16 @@ function refused(error) {
   if (!field || !panels.fail(field, api.sentence({ ...rest, field: "" }))) notices.refuse(error);
 }
 
+/** A link to another state was pasted into this page's address. */
+async function pasted() {
+  try {
+    const state = await decode(location.hash);
+    if (state && store.document) store.replace(state);
+  } catch {
+    notices.toast("This link is damaged: the picture stays as it was.", "refusal");
+  }
+}
+
 const refresh = perFrame(() => {
   if (!store.document || !store.scene) return;
   panels.refresh();
@@ -164,9 +174,11 @@ async function start() {
     notices.connection(detail.reason || "The connection is lost. Your view is kept; trying again.", true);
   });
   addEventListener("online", () => link.retry());
+  addEventListener("hashchange", pasted);
   notices.connection("Connecting to the server …");
   const query = new URLSearchParams(location.search);
-  opening = { state: await decode(location.hash).catch(() => null), scene: query.get("scene"), preset: query.get("preset") };
+  const state = await decode(location.hash).catch(() => notices.toast("This link is damaged, so the scene starts at its defaults.", "refusal"));
+  opening = { state: state ?? null, scene: query.get("scene"), preset: query.get("preset") };
   link.connect();
   gallery.load().catch(() => null);
 }

@@ -58,10 +58,11 @@ export class Notices {
     this.toast(sentence(error), "refusal");
   }
 
+  /** A line that goes away by itself; a refusal stays until it is dismissed. */
   toast(words, sort = "") {
     const toast = el("div", { class: `glass toast ${sort}` }, el("span", { text: words }), iconButton("close", "Dismiss", () => toast.remove()));
     this.toasts.append(toast);
     while (this.toasts.children.length > 3) this.toasts.firstChild.remove();
-    setTimeout(() => toast.remove(), TOAST_MS);
+    if (!sort) setTimeout(() => toast.remove(), TOAST_MS);
   }
 }

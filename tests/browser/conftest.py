@@ -15,13 +15,13 @@ SMALL = 0.25
 Open = Callable[..., Page]
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="package")
 def service() -> Iterator[house.Service]:
     with house.service() as served:
         yield served
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="package")
 def browser() -> Iterator[Browser]:
     with sync_playwright() as playwright:
         opened = house.launch(playwright)
@@ -29,27 +29,30 @@ def browser() -> Iterator[Browser]:
         opened.close()
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="package")
 def document(service: house.Service) -> dict[str, Any]:
     """A state that is drawn quickly: no shadow, two samples, the sun by direction."""
-    sets = {"shadow.kind": "none", "quality": {"kind": "samples", "n": 2}, "sun": {"kind": "direction", "azimuth": 150.0, "elevation": 40.0}}
+    sun = {"kind": "direction", "azimuth": 150.0, "elevation": 40.0}
+    sets = {"shadow.kind": "none", "quality": {"kind": "samples", "n": 2}, "sun": sun}
     return service.session.state("forest", sets=sets).model_dump(mode="json")
 
 
 @pytest.fixture
 def open_page(service: house.Service, browser: Browser, document: dict[str, Any]) -> Iterator[Open]:
-    """Opens the page in a fresh browser context, waits for its picture at rest; any error of the page fails the test."""
+    """Opens the page in a fresh browser context and waits for rest; any error of the page fails the test."""
     contexts: list[BrowserContext] = []
     errors: list[str] = []
 
-    def go(state: dict[str, Any] | None = None, **options: Any) -> Page:
+    def go(state: dict[str, Any] | None = None, *, rest: bool = True, **options: Any) -> Page:
         context = browser.new_context(**{"viewport": DESK, "device_scale_factor": SMALL, **options})
         contexts.append(context)
         page = context.new_page()
         page.on("pageerror", lambda error: errors.append(str(error)))
         page.goto(house.link(service.address, state or document))
-        house.until(page, "window.umbrage !== undefined && umbrage.store.document !== null && umbrage.stats.frames > 0")
-        house.settled(page)
+        house.until(page, "window.umbrage !== undefined && umbrage.store.document !== null")
+        if rest:
+            house.until(page, "umbrage.stats.frames > 0")
+            house.settled(page)
         return page
 
     yield go

@@ -103,7 +103,10 @@ def wait_for(condition: Any, what: str, patience: float = PATIENCE_S) -> None:
 
 
 def until(page: Page, expression: str, patience: float = PATIENCE_S) -> None:
-    """Poll until a JavaScript expression is true in the page; its policy forbids playwright's own polling, which evaluates text."""
+    """Poll until a JavaScript expression is true in the page.
+
+    Playwright's own polling evaluates text inside the page, which the page's policy forbids.
+    """
     wait_for(lambda: page.evaluate(expression), expression, patience)
 
 

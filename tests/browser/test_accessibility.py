@@ -52,13 +52,18 @@ def test_every_control_is_reached_by_keyboard(open_page: Open) -> None:
     page = open_page()
     reached = set()
     page.locator("#surface").focus()
-    for _ in range(40):
+    while "What a picture costs" not in reached:  # the last one; a page that traps the focus runs into the timeout
         page.keyboard.press("Tab")
         reached.add(page.evaluate("document.activeElement.getAttribute('aria-label') ?? document.activeElement.id"))
-    assert {"Scenes and presets", "Compare", "Export", "As code", "Time of day", "Sun"} <= reached or "Step, slider" in reached
+    everything = page.evaluate("""[...document.querySelectorAll('button, input, select, summary, [tabindex="0"]')]
+        .filter((item) => item.checkVisibility({visibilityProperty: true}) && !item.disabled && item.tabIndex >= 0)
+        .filter((item) => !['radio', 'file'].includes(item.type) && item.id !== 'surface')
+        .map((item) => item.getAttribute('aria-label') ?? item.id)""")
+    assert set(everything) - reached == set()
 
 
 def test_the_checker_sees_a_spoiled_page(open_page: Open) -> None:
     page = open_page(bypass_csp=True)
-    page.evaluate("document.querySelector('#scene').removeAttribute('aria-label'); document.querySelector('#scene').textContent = ''")
+    page.evaluate("document.querySelector('#tools button').removeAttribute('aria-label')")
+    page.evaluate("document.querySelector('#tools button').removeAttribute('title')")
     assert "button-name" in [rule for rule, _ in violations(page)]
