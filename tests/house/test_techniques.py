@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
+from typing import Literal
 
 import pytest
 
 from renderer.core import registry
+from renderer.core.params import facts, param, uniform_declarations
+from renderer.core.technique import Technique
 
 ROOT = Path(__file__).parent.parent.parent
 SHADERS = ROOT / "shaders"
@@ -78,3 +81,33 @@ def test_glsl_says_where_it_comes_from(path: Path) -> None:
 ])
 def test_the_check_of_purity_bites(text: str, found: list[str]) -> None:
     assert staged(text) == found
+
+
+def unused(technique: type[Technique], slot: str, texts: list[str]) -> list[str]:
+    """Live and build parameters of a technique that no function of its GLSL reads."""
+    words = set(re.findall(r"\w+", COMMENT.sub("", "\n".join(texts))))
+    live = re.findall(r"^uniform \w+ (\w+);", uniform_declarations(technique, slot), re.MULTILINE)
+    build = [f"{slot}_{name}".upper() for name, field in technique.model_fields.items()
+             if facts(field).get("cost") == "build"]
+    return [name for name in [*live, *build] if name not in words]
+
+
+@pytest.mark.parametrize(("phenomenon", "slot", "kind"), TECHNIQUES)
+def test_every_parameter_reaches_the_glsl(phenomenon: str, slot: str, kind: str) -> None:
+    """A control that changes nothing misleads; what only Python reads is declared with the cost `host`."""
+    folder = SHADERS / phenomenon / slot
+    texts = [path.read_text() for path in (folder / f"{kind}.glsl", *folder.glob(f"{kind}_*.glsl"))]
+    assert unused(registry.techniques(phenomenon, slot)[kind], slot, texts) == []
+
+
+def test_an_unused_parameter_is_found() -> None:
+    class Idle(Technique):
+        """A technique with two parameters."""
+
+        kind: Literal["idle"] = "idle"
+        read: float = param(1.0, label="Read", help="Is read.")
+        left: float = param(1.0, label="Left", help="Is only spoken of.")
+        count: int = param(1, label="Count", help="Is read, too.", cost="build")
+
+    text = "// shadow_left\nfloat f() { return shadow_read * SHADOW_COUNT; }"
+    assert unused(Idle, "shadow", [text]) == ["shadow_left"]
