@@ -28,8 +28,8 @@ bench: setup ## Frame times per technique and preset, in milliseconds and yardst
 study: setup ## Error of every combination of techniques against the reference, with charts
 	$(BIN)/umbrage study forest $(ARGS)
 
-screenshots: setup-test ## The pictures in docs/, taken anew
-	$(BIN)/umbrage screenshots $(ARGS)
+screenshots: setup-test ## Pictures of every preset, panel and state of the page, in out/ (ARGS go to it)
+	$(BIN)/python -m tests.browser.screenshots $(ARGS)
 
 lock: setup ## Resolve the dependencies anew and write the lock files
 	$(BIN)/python -m venv out/lock
