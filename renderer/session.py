@@ -9,8 +9,9 @@ from concurrent.futures import Executor, Future
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from renderer.core.baking import Progress, bake_key
+from renderer.core.baking import bake_key
 from renderer.core.cache import AssetStore, Cache
+from renderer.core.channel import Progress
 from renderer.core.errors import InputError
 from renderer.core.params import merge, set_path, validate
 from renderer.core.registry import phenomena, phenomenon, techniques
@@ -271,14 +272,8 @@ class Session:
 
     def _technique(self, scene: str, slot: str, kind: str) -> dict[str, Any]:
         technique = techniques(scene, slot)[kind]
-        version = self.gl.info.version
-        missing = (
-            ""
-            if version >= technique.requires
-            else (
-                f"requires OpenGL {technique.requires[0]}.{technique.requires[1]}; this machine has {version[0]}.{version[1]}"
-            )
-        )
+        needs, has = technique.requires, self.gl.info.version
+        missing = f"requires OpenGL {needs[0]}.{needs[1]}; this machine has {has[0]}.{has[1]}" if has < needs else ""
         return {
             "kind": kind,
             "title": technique.title,

@@ -69,8 +69,9 @@ class Painter:
 
 
 class View:
-    """One connected canvas. A frame of the same state and size as the last one adds samples to it; any other starts afresh.
+    """One connected canvas.
 
+    A frame of the same state and size as the last one adds samples to it; any other starts afresh.
     Two views never share a mean; they share textures and programs, and take turns on the GL thread.
     """
 
@@ -85,7 +86,9 @@ class View:
         self._shown: tuple[str, tuple[int, int]] | None = None
 
     def frame(self, state: SceneState, width: int, height: int, more: int = 1) -> Future[Frame]:
-        """Draw `more` samples and show the mean so far; a newer call replaces one that has not begun, whose future is cancelled.
+        """Draw `more` samples and show the mean so far.
+
+        A newer call replaces one that has not begun, whose future is cancelled.
 
         Args:
             state: checked and prepared.

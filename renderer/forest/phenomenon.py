@@ -12,7 +12,7 @@ SLOTS = (
         "geometry",
         "Geometry",
         "How the canopy is sampled along a ray.",
-        "void geometry_trace(vec3 origin, vec3 direction, float t, float jitter, vec3 shift, inout Events events) // metres",
+        "void geometry_trace(vec3 origin, vec3 direction, float t, float jitter, vec3 shift, inout Events events) // m",
         DEFAULTS["geometry"],
     ),
     Slot(

@@ -54,7 +54,8 @@ uniform vec2 picture_size;
 uniform vec2 pixel_offset;        // of the sample within its pixel, from the top-left corner
 uniform float sample_shift;       // [0, 1), turns the jitter from sample to sample"""
 
-FRAME_BODY = """const vec4 JITTER_TURNS = vec4(0.8566748838545029, 0.7338918566271260, 0.6287067210378087, 0.5385972572236101); // R4
+FRAME_BODY = """// R4, the low-discrepancy sequence of Roberts 2018.
+const vec4 JITTER_TURNS = vec4(0.8566748838545029, 0.7338918566271260, 0.6287067210378087, 0.5385972572236101);
 layout(location = 0) out vec4 radiance;
 void main() {
     vec2 corner = picture_pixel(gl_FragCoord.xy, picture_size) - 0.5;

@@ -71,13 +71,14 @@ class ForestRenderer:
     def _world_textures(self, state: ForestState, baked: Baked) -> dict[str, AnyTexture]:
         ground, pattern = baked["terrain"], baked["pattern"]
         seed = state.ground.map_seed
-        return {
+        held = {
             **self._baked.get(ground.key, lambda: ground_textures(self._gl, ground.arrays)),
             **self._baked.get(
                 ("tiles", seed), lambda: {"tiles": self._gl.texture2d(tile_map(seed), "nearest", "repeat")}
             ),
             **self._baked.get(pattern.key, lambda: pattern_textures(self._gl, pattern.arrays)),
-        }  # type: ignore[dict-item]
+        }
+        return held  # type: ignore[return-value]
 
     def _world(self, state: ForestState, baked: Baked) -> dict[str, Any]:
         ground = baked["terrain"]
@@ -172,8 +173,9 @@ class ForestRenderer:
         """Where the rays of each block of pixels begin; the same until the camera or the ground changes."""
 
         def draw() -> dict[str, Target]:
-            blocks = [-(-side // SCOUT_BLOCK) for side in size]
-            return {"target": self._draw_into(Target(self._gl, *blocks, components=1), scout_source(), values, textures)}
+            across, down = (-(-side // SCOUT_BLOCK) for side in size)
+            target = Target(self._gl, across, down, components=1)
+            return {"target": self._draw_into(target, scout_source(), values, textures)}
 
         made = self._moment.get(("scout", state.camera, size, baked["terrain"].key), draw)["target"]
         assert isinstance(made, Target)

@@ -148,9 +148,9 @@ class ForestState(SceneState):
     )
     light: slot_union("forest", "light") = _slot("light", "Light", "How a leaf answers the sun.")  # type: ignore[valid-type]
     sky: slot_union("forest", "sky") = _slot("sky", "Sky light", "How the sky lights the canopy.")  # type: ignore[valid-type]
-    filter: slot_union("forest", "filter") = _slot(
+    filter: slot_union("forest", "filter") = _slot(  # type: ignore[valid-type]
         "filter", "Filtering", "Which level of the pattern a distance deserves."
-    )  # type: ignore[valid-type]
+    )
 
     def techniques(self) -> dict[str, Any]:
         """The chosen technique of each slot."""

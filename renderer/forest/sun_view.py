@@ -18,7 +18,7 @@ class SunView:
     """A square window facing the sun.
 
     Attributes:
-        corner: world position [m] of texel coordinate (0, 0), beyond everything that could cast a shadow into the window.
+        corner: world position [m] of texel coordinate (0, 0), beyond all that could cast a shadow into the window.
         right, up: world vectors [m] from that corner along the window's sides.
         size: side of the window [m].
     """

@@ -52,9 +52,9 @@ def ground_textures(gl: GL, ground: Arrays) -> dict[str, AnyTexture]:
 
 
 def packed(colour: np.ndarray, anchor: np.ndarray) -> np.ndarray:
-    """Colour and anchor of each voxel as four 16-bit numbers, two bytes in each: red green, blue opacity, foot x y, distance wood.
+    """Colour and anchor of each voxel as four 16-bit numbers, so that a march reads a voxel from one cache line.
 
-    A march then reads all it needs of a voxel from one cache line.
+    Two bytes in each: red and green, blue and opacity, foot x and y, distance and wood.
     """
     both = np.concatenate([colour, anchor], axis=-1).astype(np.uint16)
     return both[..., 0::2] * np.uint16(256) + both[..., 1::2]
@@ -77,10 +77,10 @@ def _endings(pattern: Arrays) -> list[str]:
 
 
 def tile_map(seed: int) -> np.ndarray:
-    """Tiles of a patch of the lattice around the origin, (TILE_MAP, TILE_MAP, 2) uint8: the upward and the downward triangle of a cell.
+    """Tiles of a patch of the lattice around the origin, (TILE_MAP, TILE_MAP, 2) uint8: upward and downward triangles.
 
-    The tiling needs no storage (`tiles.locate` reaches any point); the shader reads this patch of it because one fetch costs
-    less than four hashes. Cell (i, j) is at column i mod TILE_MAP, row j mod TILE_MAP; each value is 4 p + q.
+    The tiling needs no storage (`tiles.locate` reaches any point); the shader reads this patch of it because one fetch
+    costs less than four hashes. Cell (i, j) is at column i mod TILE_MAP, row j mod TILE_MAP; each value is 4 p + q.
     """
     half = TILE_MAP // 2
     cell = (np.arange(TILE_MAP) + half) % TILE_MAP - half

@@ -9,7 +9,7 @@ from renderer.forest.technique import ForestTechnique
 
 
 class RayMarch(ForestTechnique):
-    """Samples the canopy along each ray, front to back, skipping what is empty and stopping when nothing shows through."""
+    """Samples the canopy along each ray, front to back; skips what is empty, stops when nothing shows through."""
 
     title: ClassVar[str] = "Ray marching"
     caption: ClassVar[str] = "Walks each ray through the canopy: no slices to see at any angle."

@@ -51,6 +51,7 @@ class DepthShadowMap(ForestTechnique):
     strength: float = param(1.0, label="Strength", help="Share of the shadow.", unit="ratio", ge=0, le=1)
 
     def sun_pass(self, state: ForestState, baked: Mapping[str, Arrays], size: tuple[int, int]) -> SunPass | None:
+        """The depth pass over the window that holds what the camera sees."""
         sun = direction(state.sun)
         points = visible_points(state.camera, baked["terrain"], CELL, CANOPY_HEIGHT, REACH, size)
         view = fit(points, sun, baked["terrain"], CELL, CANOPY_HEIGHT)

@@ -61,18 +61,22 @@ class DoubleHorizonMap(ForestTechnique):
     )
 
     def bakes(self, state: ForestState, terrain: Bake, pattern: Bake) -> list[Bake]:
+        """The terrain's horizon and the canopy's, in this many sectors."""
         return [
             terrain_horizon_bake(terrain, self.sectors),
             canopy_horizon_bake(pattern, self.sectors, self.height_low),
         ]
 
     def frame_key(self, state: ForestState) -> tuple[Any, ...]:
+        """The maps in use and the azimuth at which they are read."""
         return (self.kind, self.sectors, self.height_low, round(angles(state.sun)[0], 7))
 
     def frame_textures(self, state: ForestState, baked: Mapping[str, Arrays]) -> dict[str, np.ndarray]:
+        """Horizon elevation [rad] at the sun's azimuth: `terrain` (N, N) and `canopy` (J, I[, 2])."""
         azimuth = angles(state.sun)[0]
         top, low = (at_azimuth(level, azimuth) for level in baked["canopy_horizon"]["sectors"])
         return {"terrain": terrain_at(baked["terrain_horizon"], azimuth), "canopy": np.stack([top, low], axis=-1)}
 
     def constants(self) -> dict[str, float]:
+        """The height that the low map was baked for."""
         return {"shadow_low": self.height_low}

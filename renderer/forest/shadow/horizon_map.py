@@ -54,12 +54,15 @@ class HorizonMap(ForestTechnique):
     )
 
     def bakes(self, state: ForestState, terrain: Bake, pattern: Bake) -> list[Bake]:
+        """The terrain's horizon and the canopy's, in this many sectors."""
         return [terrain_horizon_bake(terrain, self.sectors), canopy_horizon_bake(pattern, self.sectors, self.height)]
 
     def frame_key(self, state: ForestState) -> tuple[Any, ...]:
+        """The maps in use and the azimuth at which they are read."""
         return (self.kind, self.sectors, self.height, round(angles(state.sun)[0], 7))
 
     def frame_textures(self, state: ForestState, baked: Mapping[str, Arrays]) -> dict[str, np.ndarray]:
+        """Horizon elevation [rad] at the sun's azimuth: `terrain` (N, N) and `canopy` (J, I[, 2])."""
         azimuth = angles(state.sun)[0]
         return {
             "terrain": terrain_at(baked["terrain_horizon"], azimuth),
