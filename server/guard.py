@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import hmac
 from http.cookies import CookieError, SimpleCookie
 from urllib.parse import parse_qs, urlsplit
@@ -83,18 +84,21 @@ class Guard:
 
     async def _pass(self, scope: Scope, receive: Receive, send: Send, limit: int) -> None:
         taken = 0
-        started = False
+        started = over = False
 
         async def counted() -> Message:
-            nonlocal taken
+            nonlocal taken, over
             message = await receive()
             taken += len(message.get("body", b""))
             if taken > limit:
+                over = True
                 raise TooLarge
             return message
 
         async def dressed(message: Message) -> None:
             nonlocal started
+            if over and not started:
+                return  # whatever the application makes of it, the answer is the one below
             if message["type"] == "http.response.start":
                 started = True
                 headers = MutableHeaders(scope=message)
@@ -103,13 +107,12 @@ class Guard:
                 self._remember(scope, headers)
             await send(message)
 
-        try:
+        with contextlib.suppress(TooLarge):
             await self._app(scope, counted, dressed)
-        except TooLarge:
-            if not started:
-                await self._refuse(
-                    scope, receive, send, 413, "", "the request's body is too large", f"at most {limit} bytes"
-                )
+        if over and not started:
+            await self._refuse(
+                scope, receive, send, 413, "", "the request's body is too large", f"at most {limit} bytes"
+            )
 
     def _limit(self, scope: Scope) -> int:
         """Largest body of this request [bytes]."""

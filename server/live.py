@@ -115,10 +115,10 @@ class Live:
         self._probes += 1
         self._spawn(self._probe(self.panes[0], message))
 
-    async def close(self) -> None:
-        """Release the views."""
+    def close(self) -> None:
+        """Release the views; waits for nothing, so that even a cancelled connection does it."""
         for pane in self.panes:
-            await self._hub.call(pane.view.close)
+            self._hub.callers.submit(pane.view.close)
 
     def _open_pane(self) -> None:
         index = len(self.panes)

@@ -25,6 +25,7 @@ class Settings(Model):
         "",
         label="Token",
         help="Secret that every client must show; empty for none on a loopback address",
+        pattern=r"^[A-Za-z0-9._~-]*$",
         cost="host",
         max_length=200,
     )

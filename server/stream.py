@@ -60,9 +60,9 @@ class Stream:
         finally:
             for task in self._tasks:
                 task.cancel()
-            await asyncio.gather(*self._tasks, return_exceptions=True)
             if self._live is not None:
-                await self._live.close()
+                self._live.close()
+            await asyncio.gather(*self._tasks, return_exceptions=True)
 
     async def _tell(self, message: BaseModel) -> None:
         await self._socket.send_text(protocol.dump(message))

@@ -2,52 +2,55 @@
 
 from __future__ import annotations
 
-import shutil
 import tempfile
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import Any
 
-from fastapi import APIRouter, UploadFile
+from fastapi import APIRouter, Request
 from fastapi import Path as PathField
 from starlette.responses import Response
 
-from renderer.core.errors import InputError, LimitError
-from server.hub import Hub, TheHub
+from renderer.core.errors import InputError
+from server.hub import TheHub
 from server.problems import Json, missing
+from server.uploads import receive
 
 router = APIRouter(tags=["assets"])
-CHUNK = 1 << 20
+FORM: dict[str, Any] = {
+    "requestBody": {
+        "required": True,
+        "content": {
+            "multipart/form-data": {
+                "schema": {
+                    "type": "object",
+                    "required": ["file"],
+                    "properties": {"file": {"type": "string", "format": "binary", "description": "The file."}},
+                }
+            }
+        },
+    }
+}
 
 
 @router.post(
     "/api/assets",
     summary="Upload a file",
     status_code=201,
+    openapi_extra=FORM,
     responses={413: {"description": "The file is too large"}, 422: {"description": "The file was refused"}},
 )
-async def upload(hub: TheHub, file: UploadFile) -> Response:
-    """Check and store a terrain, mesh, volume or other file; answers its hash, kind, a preview and when it expires."""
-    try:
-        answer = await hub.call(_store, hub, file.file, file.filename or "")
-    except InputError:
-        hub.metrics.uploads.labels("refused").inc()
-        raise
+async def upload(request: Request, hub: TheHub) -> Response:
+    """Check and store a terrain, mesh, volume or other file; answers its name in documents, its kind and a preview."""
+    with tempfile.TemporaryDirectory(prefix="umbrage-upload-") as folder:
+        path = Path(folder) / "upload"  # the client's name is no path
+        try:
+            name = await receive(request, path, hub.settings.upload_bytes, hub.call)
+            answer = await hub.call(hub.session.add_asset, path, name)
+        except InputError:
+            hub.metrics.uploads.labels("refused").inc()
+            raise
     hub.metrics.uploads.labels("stored").inc()
     return Json(answer, 201)
-
-
-def _store(hub: Hub, source: BinaryIO, filename: str) -> dict[str, Any]:
-    """Hand an upload to the session as a file of its own; the client's name is no path."""
-    limit = hub.settings.upload_bytes
-    with tempfile.TemporaryDirectory(prefix="umbrage-upload-") as folder:
-        path = Path(folder) / "upload"
-        with path.open("wb") as target:
-            shutil.copyfileobj(source, target, CHUNK)
-            if target.tell() > limit:
-                raise LimitError("file", "the file is too large", f"at most {limit} bytes")
-            if target.tell() == 0:
-                raise InputError("file", "the file is empty")
-        return hub.session.add_asset(path, Path(filename.replace("\\", "/")).name[:200])
 
 
 @router.get("/api/assets", summary="Stored files")
@@ -57,7 +60,7 @@ async def listing(hub: TheHub) -> Response:
 
 
 @router.get(
-    "/api/assets/{digest}", summary="One stored file", responses={422: {"description": "There is no such file"}}
+    "/api/assets/{digest}", summary="One stored file", responses={404: {"description": "There is no such file"}}
 )
 async def asset(hub: TheHub, digest: str = PathField(max_length=100)) -> Response:
     """Kind, name and expiry of a stored file; asking puts its expiry off."""

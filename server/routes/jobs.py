@@ -61,13 +61,13 @@ async def listing(hub: TheHub) -> Response:
     return Json([job.document() for job in hub.jobs.list()])
 
 
-@router.get("/{number}", summary="One job", responses={422: {"description": "There is no such job"}})
+@router.get("/{number}", summary="One job", responses={404: {"description": "There is no such job"}})
 async def job(hub: TheHub, number: str = Identity) -> Response:
     """Status, progress, and the result once there is one."""
     return Json(hub.jobs.get(number).document())
 
 
-@router.delete("/{number}", summary="Cancel a job", responses={422: {"description": "There is no such job"}})
+@router.delete("/{number}", summary="Cancel a job", responses={404: {"description": "There is no such job"}})
 async def cancel(hub: TheHub, number: str = Identity) -> Response:
     """Cancel a job, or forget one that is over."""
     found = hub.jobs.get(number)
@@ -79,7 +79,7 @@ async def cancel(hub: TheHub, number: str = Identity) -> Response:
     "/{number}/files/{name}",
     summary="A file of a job's result",
     response_class=Response,
-    responses={200: {"content": {"image/png": {}}}, 422: {"description": "There is no such file"}},
+    responses={200: {"content": {"image/png": {}}}, 404: {"description": "There is no such file"}},
 )
 async def file(hub: TheHub, number: str = Identity, name: str = Path(max_length=100)) -> Response:
     """A picture that a job left."""

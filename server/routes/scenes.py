@@ -27,7 +27,7 @@ async def scenes(hub: TheHub) -> Response:
     return Json(await hub.call(hub.session.scenes))
 
 
-@router.get("/api/scenes/{scene}", summary="One scene", responses={422: {"description": "There is no such scene"}})
+@router.get("/api/scenes/{scene}", summary="One scene", responses={404: {"description": "There is no such scene"}})
 async def scene(hub: TheHub, scene: str = Path(max_length=100)) -> Response:
     """Schema of the state, its defaults, presets, slots and techniques."""
     with missing():
@@ -38,7 +38,7 @@ async def scene(hub: TheHub, scene: str = Path(max_length=100)) -> Response:
     "/api/scenes/{scene}/presets/{preset}/thumbnail.jpg",
     summary="Small picture of a preset",
     response_class=Response,
-    responses={200: {"content": {"image/jpeg": {}}}, 422: {"description": "There is no such preset"}},
+    responses={200: {"content": {"image/jpeg": {}}}, 404: {"description": "There is no such preset"}},
 )
 async def thumbnail(
     request: Request, hub: TheHub, scene: str = Path(max_length=100), preset: str = Path(max_length=100)
@@ -78,7 +78,7 @@ async def schema(hub: TheHub) -> Response:
 @router.get(
     "/api/scenes/{scene}/presets/{preset}",
     summary="State document of a preset",
-    responses={422: {"description": "There is no such preset"}},
+    responses={404: {"description": "There is no such preset"}},
 )
 async def preset(hub: TheHub, scene: str = Path(max_length=100), preset: str = Path(max_length=100)) -> Response:
     """The whole state document of a preset, as `POST /api/render` takes it."""

@@ -30,7 +30,7 @@ def _files(folder: str, scene: str) -> dict[str, Path]:
     }
 
 
-@router.get("/{scene}", summary="Files of a study", responses={422: {"description": "There is no study of this scene"}})
+@router.get("/{scene}", summary="Files of a study", responses={404: {"description": "There is no study of this scene"}})
 async def study(hub: TheHub, scene: str = PathField(max_length=100)) -> Response:
     """Charts, tables and raw results of a scene's study."""
     found = await hub.call(_files, hub.settings.study, scene)
@@ -51,7 +51,7 @@ async def study(hub: TheHub, scene: str = PathField(max_length=100)) -> Response
     "/{scene}/{name:path}",
     summary="A file of a study",
     response_class=FileResponse,
-    responses={422: {"description": "There is no such file"}},
+    responses={404: {"description": "There is no such file"}},
 )
 async def file(hub: TheHub, scene: str = PathField(max_length=100), name: str = PathField(max_length=300)) -> Response:
     """One chart, table or raw result."""

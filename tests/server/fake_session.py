@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import io
 import threading
 import time
@@ -208,8 +209,10 @@ class FakeSession:
 
     def _bake(self, state: FakeState, preparation: FakePreparation, on_progress: Any) -> None:
         for step in range(1000):
+            report = SimpleNamespace(name="density", fraction=step / 1000, words="baking", seconds_left=1.0)
             if on_progress is not None:
-                on_progress(SimpleNamespace(name="density", fraction=step / 1000, words="baking", seconds_left=1.0))
+                with contextlib.suppress(Cancelled):
+                    on_progress(report)
             if preparation.cancelled:
                 return
             if self.bake_gate.wait(0.01):
