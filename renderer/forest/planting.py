@@ -101,7 +101,7 @@ def plant(
         steps = np.array([(0, down), (down, 0), (0, 0)]) @ base
         for cell in everywhere:
             around = _moved(corner, corners)
-            for direction, worn in enumerate(triple(*cell, down)):
+            for direction, worn in enumerate(triple(cell[0], cell[1], down)):
                 around += _moved(strips[direction, int(worn)], steps[direction : direction + 1])
             planted += darts.throw(cell[None], around, corners, _inside_rule(corners))
     return planted
