@@ -60,22 +60,23 @@ export class Form {
 
 /** A union: a row of choices, then the fields of the chosen member. */
 export class UnionPart {
-  constructor(context, path, node, { picker = true } = {}) {
+  constructor(context, path, node, { picker = true, titled = true } = {}) {
     Object.assign(this, { context, path, node });
     this.members = context.schema.members(node);
     this.holder = el("div", { class: "union-fields" });
-    this.root = el("div", { class: "union", data: { path } }, picker ? this.picker() : null, this.holder);
+    this.root = el("div", { class: "union", data: { path } }, picker ? this.picker(titled) : null, this.holder);
     this.kind = null;
   }
 
-  picker() {
+  picker(titled) {
     const name = freshId("union");
     this.radios = [...this.members].map(([kind]) => {
       const radio = el("input", { type: "radio", name, value: kind, on: { change: () => this.choose(kind) } });
       return [radio, el("label", { class: "segment" }, radio, el("span", { text: humanise(kind) }))];
     });
     const group = el("div", { class: "segments", role: "radiogroup", "aria-label": this.node.title }, this.radios.map(([, label]) => label));
-    return el("div", { class: "control" }, el("div", { class: "control-head" }, el("span", { class: "label", text: this.node.title })), group);
+    const head = el("div", { class: "control-head" }, el("span", { class: "label", text: this.node.title }));
+    return el("div", { class: "control" }, titled ? head : null, group);
   }
 
   /** A member that needs a file waits for it; the others start at their defaults. */

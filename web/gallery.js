@@ -35,7 +35,8 @@ export class Gallery {
   name() {
     const { scene, document } = this.store;
     if (!scene || !document) return;
-    const match = Object.values(scene.presets).find((preset) => same(preset.document, document));
+    const shown = (state) => ({ ...state, quality: null });
+    const match = Object.values(scene.presets).find((preset) => same(shown(preset.document), shown(document)));
     this.button.querySelector(".scene-name").textContent = scene.title;
     this.button.querySelector(".preset-name").textContent = match?.title ?? "own view";
   }

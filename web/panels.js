@@ -70,7 +70,7 @@ export class Panels {
   }
 
   section(context, name, node, sort) {
-    const part = sort === "union" ? new UnionPart(context, name, node) : new Form(context);
+    const part = sort === "union" ? new UnionPart(context, name, node, { titled: false }) : new Form(context);
     if (sort === "object") part.addFields(name, node);
     this.parts.push(part);
     return this.fold(node.title ?? humanise(name), name === "view", part.root);

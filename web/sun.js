@@ -21,6 +21,11 @@ export function clock(minutes) {
   return [seconds / 3600, (seconds / 60) % 60, seconds % 60].map((part) => String(Math.floor(part)).padStart(2, "0")).join(":");
 }
 
+/** The nearest of the eight winds, as `SW`. */
+export function compass(azimuth) {
+  return ["N", "NE", "E", "SE", "S", "SW", "W", "NW"][Math.round(wrap(azimuth) / 45) % 8];
+}
+
 /** The course of one day at one place, as the server computed it. */
 export class Day {
   constructor(answer) {

@@ -2,7 +2,7 @@
 
 import { el, freshId, icon, iconButton } from "./dom.js";
 import { UnionPart } from "./form.js";
-import { clock, Days, Dome, minutesOf } from "./sun.js";
+import { clock, compass, Days, Dome, minutesOf } from "./sun.js";
 
 const LAST_MINUTE = 1439;
 const PLAY_MINUTES_PER_SECOND = 36;
@@ -141,7 +141,7 @@ export class SunBar {
     const placed = free ? sun : (this.day?.at(this.minutes) ?? null);
     this.root.classList.toggle("free", free);
     this.clock.textContent = free ? "by hand" : sun.time.slice(0, 5);
-    this.note.textContent = placed ? `${placed.azimuth.toFixed(0)}° azimuth · ${placed.elevation.toFixed(1)}° high` : "";
+    this.note.textContent = placed ? `${compass(placed.azimuth)} ${placed.azimuth.toFixed(0)}°, ${placed.elevation.toFixed(1)}° high` : "";
     if (!this.range.matches(":active")) this.range.value = this.minutes;
     this.range.setAttribute("aria-valuetext", free ? "sun placed by hand" : sun.time.slice(0, 5));
     if (placed) this.dome.show(placed, this.day);

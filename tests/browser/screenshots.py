@@ -38,7 +38,7 @@ def compare(page: Page) -> None:
 def difference(page: Page) -> None:
     """Their difference."""
     compare(page)
-    page.get_by_text("Difference", exact=True).click()
+    page.get_by_role("radio", name="Difference").check()
 
 
 def cards(page: Page) -> None:
