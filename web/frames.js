@@ -1,6 +1,7 @@
 // Pictures as they arrive: header, decoding, order, acknowledgement, and what each one cost.
 
 const HEADER_BYTES = 4;
+const AHEAD = 2;
 const MIME = { jpeg: "image/jpeg", png: "image/png" };
 
 /** Header and image bytes of one binary message. */
@@ -13,8 +14,8 @@ export function parse(buffer) {
 /**
  * Decodes and draws frames, oldest dropped when a newer one of the same stream was drawn already.
  *
- * A frame is acknowledged when it arrives, not when it is drawn: the server then renders the next one while this one
- * is decoded, and still at most two are unacknowledged.
+ * A frame is acknowledged when it arrives, so that the server renders the next one while this one is decoded; where
+ * decoding falls behind, only once it is decoded, so that no queue grows here.
  */
 export class Frames {
   constructor(link, screen, stats) {
@@ -29,10 +30,12 @@ export class Frames {
   async take(buffer) {
     const arrived = performance.now();
     const { header, image } = parse(buffer);
-    this.link.ack(header.sequence);
     this.stats.arrive();
+    const early = this.stats.decoding <= AHEAD;
+    if (early) this.link.ack(header.sequence);
     const bitmap = await createImageBitmap(new Blob([image], { type: MIME[header.codec] })).catch(() => null);
     this.stats.decoding -= 1;
+    if (!early) this.link.ack(header.sequence);
     if (bitmap) this.draw(header, bitmap, buffer.byteLength, arrived);
     else this.stats.damaged += 1;
   }
