@@ -14,6 +14,11 @@ import pytest
 os.environ.setdefault("UMBRAGE_CACHE", str(Path(tempfile.gettempdir()) / f"umbrage-tests-{os.getuid()}"))
 
 
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """What only some tests read must be known before any is found."""
+    parser.addoption("--regenerate", action="store_true", help="put what was found in the place of frozen references")
+
+
 @pytest.fixture(autouse=True)
 def numpy_errors_raise() -> Iterator[None]:
     """A division by zero, an overflow or an invalid operation in the code under test is a failure."""

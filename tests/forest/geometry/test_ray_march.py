@@ -1,0 +1,101 @@
+"""Ray marching: the transmittance of slabs, what skipping and stopping may change, and its distance to the reference."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from renderer.forest.geometry.ray_march import RayMarch
+from renderer.forest.world_scale import VOXEL
+from tests.forest import worlds
+from tests.forest.slabs import ALPHA, NOISE, slab_error, strata, trace
+from tests.forest.truth import Judge
+
+Ask = Callable[..., np.ndarray]
+DOWN = [(0, 0, -1), (0.6, 0, -0.8), (-0.5, 0.7, -0.5)]
+
+
+def budget(step: float) -> float:
+    """Noise, and the curvature of the exponential over one step: the last one is met or missed whole."""
+    return NOISE + (1 - (1 - ALPHA / 255) ** step) ** 2 / 4
+
+
+@pytest.mark.parametrize("direction", DOWN)
+@pytest.mark.parametrize("step", [0.25, 1.0, 2.0, 4.0])
+def test_a_slab_lets_through_what_its_length_says(ask: Ask, direction: tuple[float, ...], step: float) -> None:
+    assert slab_error(ask, RayMarch(step=step, stop=0), direction) < budget(step)
+
+
+def test_a_slab_on_a_slope_too(ask: Ask) -> None:
+    for slope in (0.5, -0.5):
+        assert slab_error(ask, RayMarch(stop=0), (0.5, 0.3, -0.8), slope) < budget(1)
+
+
+@pytest.mark.parametrize(("right", "wrong"), [
+    ("pow(1.0 - opacity_of(voxel), geometry_step)", "(1.0 - opacity_of(voxel))"),
+    ("float ds = geometry_step * voxel_size", "float ds = geometry_step"),
+    ("1.0 - (1.0 - events.opacity) * (1.0 - alpha)", "events.opacity + alpha"),
+])
+def test_a_wrong_transmittance_is_found(ask: Ask, spoil: Callable, right: str, wrong: str) -> None:
+    with spoil("forest/geometry/ray_march.glsl", right, wrong):
+        assert slab_error(ask, RayMarch(step=2, stop=0), DOWN[1]) > budget(2)
+
+
+def test_each_ray_meets_as_many_samples_as_its_twin_counts(ask: Ask) -> None:
+    """Rising rays from inside the slab leave it through the top: opacity is 1 - (1 - alpha)^(samples met)."""
+    jitter = strata()[1].astype(np.float64)
+    rise = 0.6
+    found = trace(ask, RayMarch(stop=0), (0, 0, 7.0), (0.8, 0, rise), worlds.uniform(ALPHA))
+    first = 7.0 + jitter * VOXEL * rise
+    samples = np.floor((20.0 - first) / (VOXEL * rise)) + 1
+    clear = np.abs((20.0 - first) / (VOXEL * rise) % 1 - 0.5) < 0.49  # beside the top float32 may say either
+    np.testing.assert_allclose(found[clear, 1], 1 - (1 - ALPHA / 255) ** samples[clear], atol=2e-4)
+    assert (found[:, 0] == 0).all(), "they never see the ground"
+
+
+def layered(safe: int) -> dict[str, np.ndarray]:
+    """Matter in layers 12 to 15 alone, with true safe distances raised by `safe`."""
+    made = worlds.uniform(ALPHA * 4, layers=slice(12, 16))
+    away = np.maximum(np.maximum(12 - np.arange(32), np.arange(32) - 15), 0)
+    made["anchor"][..., 2] = (away + safe * (away > 0))[:, None, None]
+    return made
+
+
+def skipping_error(ask: Ask, safe: int) -> float:
+    found = trace(ask, RayMarch(stop=0, step=0.5), (0, 0, 20.0), (0.3, 0.2, -0.9), layered(safe))
+    length = np.linalg.norm((0.3, 0.2, 0.9)) / 0.9
+    return abs(float(found[:, 0].mean()) - (1 - ALPHA * 4 / 255) ** (4 * length))
+
+
+def test_skipping_what_is_empty_changes_nothing(ask: Ask) -> None:
+    # Skips end beside the slab at places that depend on the ray: up to half a step (of 4.3) is met more or less.
+    assert skipping_error(ask, 0) < 0.03
+
+
+def test_a_skip_too_long_is_found(ask: Ask) -> None:
+    assert skipping_error(ask, 4) > 0.03
+
+
+def test_early_stop_closes_a_ray_and_nothing_else(ask: Ask) -> None:
+    found = trace(ask, RayMarch(stop=0.2), (0, 0, 20.0), (0.8, 0, -0.6), worlds.uniform(ALPHA))
+    assert (found[:, 0] == 0).all(), "the ground is seen through 8 % only"
+    assert (found[:, 1] == 1).all()
+    seen = trace(ask, RayMarch(stop=0.05), (0, 0, 20.0), (0.8, 0, -0.6), worlds.uniform(ALPHA))
+    assert seen[:, 0].mean() == pytest.approx((1 - ALPHA / 255) ** (32 / 0.6), abs=budget(1))
+
+
+def test_light_falls_on_the_first_matter_of_an_opaque_canopy(ask: Ask) -> None:
+    found = trace(ask, RayMarch(step=0.25), (0, 0, 20.0), (0, 0, -1), worlds.uniform(255))
+    assert (found[:, 3] > 20 - 2 * VOXEL).all()
+    assert (found[:, 2] <= 1).all()
+
+
+def test_distance_to_the_reference(judge: Judge) -> None:
+    """What marching itself costs: one-voxel steps and nearest voxels at random offsets instead of 1/3 voxel, trilinear."""
+    judge.holds("geometry", "ray_march", budget=0.0)
+
+
+def test_picture(judge: Judge) -> None:
+    judge.looks("geometry", "ray_march")

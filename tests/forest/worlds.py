@@ -1,0 +1,158 @@
+"""Forests made by hand: bakes so simple that their pictures can be worked out, and one small grove."""
+
+from __future__ import annotations
+
+import inspect
+import sys
+import zlib
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from renderer.core.cache import key_of
+from renderer.core.params import merge, validate
+from renderer.core.technique import Arrays, Bake, BakedArrays
+from renderer.forest.pattern_mips import mips
+from renderer.forest.state import ForestState
+from renderer.forest.tiles import tile_table
+from renderer.forest.world_scale import CELL, NODES, VOXEL
+from renderer.world.sky import VIEW_SHAPE
+
+E_SUN = (3.0, 2.0, 1.0)
+"""Irradiance of the sun in every hand-made world, W m-2, whatever its elevation."""
+
+GROUND = (0.3, 0.2, 0.1)
+LAYERS, SIZE = 32, 256
+UP = (128, 128, 255)
+"""A normal that points up, as eight bits hold it: half a step off."""
+
+Progress = Callable[[float, str], None]
+
+
+def sky(radiance: tuple[float, float, float] = (1e-30, 1e-30, 1e-30)) -> dict[str, np.ndarray]:
+    """The `sky` bake of a sky of one radiance [W m-2 sr-1], black by default, under a sun of `E_SUN` at any elevation."""
+    return {
+        "elevations": np.array([-0.4, np.pi / 2]),
+        "sun_irradiance": np.tile(E_SUN, (2, 1)).astype(np.float64),
+        "sky_irradiance": np.pi * np.tile(radiance, (2, 1)),
+        "radiance": np.broadcast_to(np.asarray(radiance, np.float64), (2, *VIEW_SHAPE, 3)),
+    }
+
+
+def ground(elevation: np.ndarray | float = 0.0, cover: np.ndarray | float = 1.0) -> dict[str, np.ndarray]:
+    """The `terrain` bake: level and wooded by default; its surface carries no stands."""
+    z = np.array(np.broadcast_to(np.asarray(elevation, np.float32), (NODES, NODES)))
+    stands = np.array(np.broadcast_to(np.asarray(cover, np.float32), (NODES, NODES)))
+    return {"elevation": z, "cover": stands, "surface": z, "base": np.zeros(())}
+
+
+def uniform(alpha: int, albedo: float = 0.5, ambient: int = 0, layers: slice = slice(None)) -> dict[str, np.ndarray]:
+    """The `pattern` bake of a slab: one opacity (of 255, for one voxel's length) in the given layers, up-facing."""
+    shape = (LAYERS, 32, 32)
+    colour = np.zeros((*shape, 4), np.uint8)
+    colour[layers] = (*(round(albedo * alpha),) * 3, alpha)
+    anchor = np.full((*shape, 4), 128, np.uint8)
+    anchor[..., 2:] = 0
+    normal = np.empty((*shape, 4), np.uint8)
+    normal[...] = (*UP, ambient)
+    level = {"colour": colour, "normal": normal, "anchor": anchor}
+    coarser = {f"{name}_{n}": array for n, given in enumerate(mips(level), 1) for name, array in given.items()}
+    return {**level, **coarser, "tile": tile_table(), "trees": np.zeros((0, 6), np.float32)}
+
+
+def together(**arrays: Arrays) -> dict[str, BakedArrays]:
+    """Bakes by name, each with a key of its content."""
+    return {
+        name: BakedArrays(key_of(name, *((k, zlib.crc32(np.ascontiguousarray(a).tobytes())) for k, a in made.items())),
+                          made)
+        for name, made in arrays.items()
+    }
+
+
+def at(x: np.ndarray | float) -> np.ndarray:
+    """Column of the terrain grid at x metres east."""
+    return np.asarray(x) / CELL + (NODES - 1) / 2
+
+
+def state(**patch: Any) -> ForestState:
+    """A forest's state: defaults, without sky behind it, changed by a merge patch."""
+    given = {"view": {"background": "none"}, "ground": {"albedo": list(GROUND), "tint_strength": 0.0}}
+    return validate(ForestState, merge(merge(ForestState().model_dump(mode="json"), given), patch))
+
+
+def sun(azimuth: float, elevation: float) -> dict[str, Any]:
+    """The document's sun, degrees."""
+    return {"kind": "direction", "azimuth": azimuth, "elevation": elevation}
+
+
+def map_view(x: float, y: float, width: float) -> dict[str, Any]:
+    """A parallel view straight down, north up, `width` metres wide."""
+    return {"kind": "orthographic", "centre": [x, y, 0.0], "direction": [0, 0, -1], "up": [0, 1, 0], "width": width}
+
+
+PLAIN = {
+    "geometry": {"kind": "ray_march"}, "shadow": {"kind": "none"}, "height_shading": {"kind": "none"},
+    "light": {"kind": "lambert"}, "sky": {"kind": "ambient"}, "filter": {"kind": "none"},
+}
+"""Techniques that add nothing of their own; a test puts the one it is about in its slot."""
+
+
+def with_technique(slot: str, kind: str, **parameters: Any) -> dict[str, Any]:
+    """`PLAIN` with one technique in its place."""
+    return {**PLAIN, slot: {"kind": kind, **parameters}}
+
+
+# A grove: round crowns on two hills, beside a glade. It is what techniques are held to the reference on.
+
+VERSION = zlib.crc32(inspect.getsource(sys.modules[__name__]).encode())
+
+
+def grove_ground(arguments: dict[str, Any], inputs: dict[str, Arrays], progress: Progress) -> Arrays:
+    """Two low hills, a glade around the origin's east."""
+    x = (np.arange(NODES) - (NODES - 1) / 2) * CELL
+    east, north = np.meshgrid(x, -x)
+    z = 14 * (1 + np.sin(east / 60) * np.cos(north / 75)) + 10 * (1 + np.sin((east + north) / 210))
+    cover = np.clip(0.5 + (np.hypot(east - 45, north) - 30) / 16, 0, 1)
+    made = ground(z.astype(np.float32), cover.astype(np.float32))
+    return {**made, "surface": made["elevation"] + np.float32(15) * (made["cover"] > 0.5)}
+
+
+def grove_pattern(arguments: dict[str, Any], inputs: dict[str, Arrays], progress: Progress) -> Arrays:
+    """Ellipsoidal crowns on trunks, four to a triangle, none across an edge."""
+    rng = np.random.default_rng(5)
+    colour, normal, anchor = (np.zeros((LAYERS, SIZE, SIZE, 4), np.uint8) for _ in range(3))
+    normal[...], anchor[...] = (*UP, 150), (128, 128, 0, 0)
+    height = ((np.arange(LAYERS) + 0.5) * VOXEL)[:, None, None]
+    for p, q, n in np.ndindex(4, 4, 8):
+        # Places in the upward triangle; its mirror image in the downward one.
+        u, v = [(0.2, 0.2), (0.2, 0.6), (0.6, 0.2), (0.34, 0.34)][n % 4]
+        u, v = (u, v) if n < 4 else (1 - u, 1 - v)
+        foot = (np.array([p + u, q + v]) + rng.uniform(-0.02, 0.02, 2)) * SIZE / 4
+        top, radius, shade = rng.uniform(11, 17), rng.uniform(3.0, 4.6), rng.uniform(0.05, 0.2)
+        i, j = (np.arange(int(foot[axis]) - 9, int(foot[axis]) + 11) for axis in (0, 1))
+        du, dv = (i[None, None, :] + 0.5 - foot[0]) * VOXEL, (j[None, :, None] + 0.5 - foot[1]) * VOXEL
+        x, y = du + 0.5 * dv + 0 * height, np.sqrt(0.75) * dv + 0 * height + 0 * du
+        out = np.stack([x / radius, y / radius, (height - 0.62 * top) / (0.4 * top) + 0 * x], axis=-1)
+        inside = (out**2).sum(axis=-1) < 1
+        trunk = (np.hypot(x, y) < 0.6) & (height + 0 * x < 0.5 * top)
+        here = np.ix_(range(LAYERS), j % SIZE, i % SIZE)
+        opacity = np.where(inside, rng.integers(10, 140, inside.shape), np.where(trunk, 255, 0))
+        full = opacity > 0
+        length = np.maximum(np.linalg.norm(out, axis=-1, keepdims=True), 1e-6)
+        albedo = np.where(inside[..., None], shade * np.array([0.7, 1.0, 0.4]), 0.1)
+        block = np.concatenate([np.rint(albedo * opacity[..., None]), opacity[..., None]], axis=-1)
+        near = (out**2).sum(axis=-1) < 1.9
+        feet = np.stack([128 - 16 * x, 128 - 16 * y], axis=-1)
+        colour[here] = np.where(full[..., None], block, colour[here])
+        normal[here] = np.where(near[..., None], np.concatenate([out / length * 127 + 128, 90 + 80 * near[..., None]],
+                                                                axis=-1), normal[here])
+        anchor[here] = np.where(near[..., None] | full[..., None],
+                                np.concatenate([np.clip(np.rint(feet), 0, 255), 0 * feet], axis=-1), anchor[here])
+    level = {"colour": colour, "normal": normal, "anchor": anchor}
+    coarser = {f"{name}_{n}": array for n, given in enumerate(mips(level), 1) for name, array in given.items()}
+    return {**level, **coarser, "tile": tile_table(), "trees": np.zeros((0, 6), np.float32)}
+
+
+GROVE_GROUND = Bake("terrain", grove_ground, {}, version=VERSION)
+GROVE_PATTERN = Bake("pattern", grove_pattern, {}, version=VERSION)
