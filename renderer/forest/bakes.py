@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 def ground_bake(state: ForestState) -> Bake:
     """Heights and forest cover over the square."""
     arguments = {"terrain": bake_arguments(state.terrain), "cover": bake_arguments(state.cover)}
-    return Bake("terrain", bake_ground, arguments, seconds=1)
+    return Bake("terrain", bake_ground, arguments, version=2, seconds=1)
 
 
 def pattern_bake(state: ForestState) -> Bake:
@@ -29,13 +29,13 @@ def pattern_bake(state: ForestState) -> Bake:
 
 def terrain_horizon_bake(terrain: Bake, sectors: int) -> Bake:
     """Terrain horizon in azimuth sectors."""
-    return Bake("terrain_horizon", bake_terrain_horizon, {"sectors": sectors}, (terrain,), seconds=4)
+    return Bake("terrain_horizon", bake_terrain_horizon, {"sectors": sectors}, (terrain,), version=2, seconds=4)
 
 
-def canopy_horizon_bake(pattern: Bake, sectors: int, height_low: float) -> Bake:
-    """Canopy horizon over the tile at two heights."""
+def canopy_horizon_bake(pattern: Bake, sectors: int, heights: list[float]) -> Bake:
+    """Canopy horizon over the tile at each height."""
     return Bake(
-        "canopy_horizon", bake_canopy_horizon, {"sectors": sectors, "height_low": height_low}, (pattern,), seconds=5
+        "canopy_horizon", bake_canopy_horizon, {"sectors": sectors, "heights": heights}, (pattern,), version=2, seconds=5
     )
 
 

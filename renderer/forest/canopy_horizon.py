@@ -65,37 +65,35 @@ def solid_tops(opacity: np.ndarray, layer: float) -> np.ndarray:
 def bake_canopy_horizon(
     arguments: dict[str, Any], inputs: dict[str, Arrays], progress: Callable[[float, str], None]
 ) -> Arrays:
-    """Smallest elevation above which every direction of a sector is clear of the canopy, at two heights.
+    """Smallest elevation above which every direction of a sector is clear of the canopy, at each height.
 
     Args:
-        arguments: `sectors`, 4 to 32; `height_low`, of the lower probe, as a share of the canopy's height.
+        arguments: `sectors`, 4 to 32; `heights`, of the probes, as shares of the canopy's height.
         inputs: `pattern`, with `colour`.
 
     Returns:
-        `sectors` float32 [2, chi, J, I] [rad] from the horizontal: level 0 at the canopy's top, level 1 at
-        `height_low`, row j along v, column i along u; sector k is centred at WORLD azimuth 2 pi k / chi from north.
-        At least 0, for the canopy goes on without end:
-        level 0 is 0 everywhere, since nothing of the pattern stands above the canopy's top.
+        `sectors` float32 [heights, chi, J, I] [rad] from the horizontal, row j along v, column i along u; sector k is
+        centred at WORLD azimuth 2 pi k / chi from north. At least 0, for the canopy goes on without end.
 
     Source: Cohen 2004, section 3.1. The neighbours are those of the atlas; on the map they are others of the same
     make.
     """
-    sectors, low = int(arguments["sectors"]), float(arguments["height_low"])
+    sectors, heights = int(arguments["sectors"]), [float(height) for height in arguments["heights"]]
     opacity = inputs["pattern"]["colour"][..., 3].astype(np.float32) / np.float32(255)
     tops = solid_tops(opacity, CANOPY_HEIGHT / len(opacity))
     voxel = TILE_SIDE * RHOMBI / tops.shape[1]
     to_index = np.linalg.inv(lattice(voxel))
-    result = np.zeros((2, sectors, *tops.shape), np.float32)
+    result = np.zeros((len(heights), sectors, *tops.shape), np.float32)
 
     def one(job: tuple[int, int]) -> tuple[int, int, np.ndarray]:
         level, number = job
-        probe = CANOPY_HEIGHT * (1.0, low)[level]
+        probe = CANOPY_HEIGHT * heights[level]
         azimuth = 2 * math.pi * number / AZIMUTHS
         slopes = np.zeros(tops.shape, np.float32)
         _search(tops, probe, np.array([math.sin(azimuth), math.cos(azimuth)]) * voxel @ to_index, voxel, REACH, slopes)
         return level, number, slopes
 
-    jobs = [(level, number) for level in (0, 1) for number in range(AZIMUTHS)]
+    jobs = [(level, number) for level in range(len(heights)) for number in range(AZIMUTHS)]
     members = [set(sector_range(sector, sectors, AZIMUTHS).tolist()) for sector in range(sectors)]
     with ThreadPoolExecutor(2) as pool:
         for done, (level, number, slopes) in enumerate(pool.map(one, jobs)):

@@ -11,8 +11,12 @@ from scipy.ndimage import gaussian_filter
 
 from renderer.core.cache import AssetStore
 from renderer.core.technique import Arrays
-from renderer.forest.world_scale import CELL, NODES
+from renderer.forest.world_scale import CELL, NODES, STAND_TOP
 from renderer.world.terrain import DEFAULT_CENTRE, TerrainReading, crop, default_terrain, load_terrain
+
+
+RIM = 3
+"""Nodes along the square's edge that always bear forest."""
 
 
 def square(arguments: dict[str, Any]) -> np.ndarray:
@@ -50,6 +54,8 @@ def cover_map(elevation: np.ndarray, base: float, rules: dict[str, Any]) -> np.n
     steep = math.tan(math.radians(rules["steepest"]))
     cover = np.minimum(cover, np.clip(0.5 + (steep - slope) * 4, 0, 1))
     cover = np.minimum(cover, np.clip(0.5 + (rules["tree_line"] - base - elevation) / 40, 0, 1))
+    # Beyond the square its edge continues for ever: let that be forest, not the streaks of a cut glade.
+    cover[:RIM] = cover[-RIM:] = cover[:, :RIM] = cover[:, -RIM:] = 1.0
     return cover.astype(np.float32)
 
 
@@ -60,11 +66,14 @@ def bake_ground(arguments: dict[str, Any], inputs: dict[str, Arrays], progress: 
         arguments: `terrain` and `cover`, as in the document.
 
     Returns:
-        `elevation` (N, N) float32 [m], `cover` (N, N) float32, `base` () float64 [m]; row 0 is the northern edge.
+        `elevation` (N, N) float32 [m], `cover` (N, N) float32, `surface` (N, N) float32 [m] with the stands' tops, `base` ()
+        float64 [m]; row 0 is the northern edge.
     """
     progress(0.1, "reading the terrain")
     terrain = square(arguments["terrain"])
     base = float(terrain.min())
     elevation = (terrain - base).astype(np.float32)
     progress(0.6, "laying out the forest")
-    return {"elevation": elevation, "cover": cover_map(elevation, base, arguments["cover"]), "base": np.float64(base)}
+    cover = cover_map(elevation, base, arguments["cover"])
+    surface = elevation + np.float32(STAND_TOP) * (cover > 0.5)
+    return {"elevation": elevation, "cover": cover, "surface": surface, "base": np.float64(base)}

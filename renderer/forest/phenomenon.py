@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from renderer.core.technique import Phenomenon, Preset, Slot
 from renderer.forest.bakes import bakes
 from renderer.forest.renderer import ForestRenderer
 from renderer.forest.state import DEFAULTS, ForestState
+from renderer.forest.world_arrays import NEEDS, world_arrays
 
 SLOTS = (
     Slot(
@@ -52,67 +55,34 @@ SLOTS = (
     ),
 )
 
+def _orbit(target: tuple[float, float, float], distance: float, azimuth: float, elevation: float) -> dict[str, Any]:
+    return {"kind": "orbit", "target": list(target), "distance": distance, "azimuth": azimuth, "elevation": elevation}
+
+
+def _sun(azimuth: float, elevation: float) -> dict[str, Any]:
+    return {"kind": "direction", "azimuth": azimuth, "elevation": elevation}
+
+
 PRESETS = {
     "noon": Preset(
         "Noon",
         "High sun over the whole valley.",
-        {
-            "camera": {
-                "kind": "orbit",
-                "target": [0, 0, 260],
-                "distance": 1500,
-                "azimuth": 215,
-                "elevation": 28,
-                "field_of_view": 40,
-            },
-            "sun": {"kind": "direction", "azimuth": 190, "elevation": 62},
-        },
+        {"camera": _orbit((200, 200, 280), 2300, 140, 24), "sun": _sun(190, 62), "view": {"exposure": -7.6}},
     ),
     "low_sun": Preset(
         "Low sun",
         "Late afternoon: long shadows from tree to tree.",
-        {
-            "camera": {
-                "kind": "orbit",
-                "target": [150, -100, 250],
-                "distance": 700,
-                "azimuth": 160,
-                "elevation": 18,
-                "field_of_view": 42,
-            },
-            "sun": {"kind": "direction", "azimuth": 255, "elevation": 16},
-        },
+        {"camera": _orbit((1150, -300, 260), 700, 205, 20), "sun": _sun(255, 18), "view": {"exposure": -6.6}},
     ),
     "valley_sunset": Preset(
         "Valley at sunset",
         "The ridge has taken the sun from the valley floor.",
-        {
-            "camera": {
-                "kind": "orbit",
-                "target": [0, 200, 240],
-                "distance": 2100,
-                "azimuth": 140,
-                "elevation": 14,
-                "field_of_view": 38,
-            },
-            "sun": {"kind": "direction", "azimuth": 292, "elevation": 7},
-            "view": {"exposure": -5.2},
-        },
+        {"camera": _orbit((1450, -500, 300), 2200, 235, 13), "sun": _sun(292, 7), "view": {"exposure": -5.6}},
     ),
     "forest_edge": Preset(
         "Forest edge",
         "A glade close by, in morning light.",
-        {
-            "camera": {
-                "kind": "orbit",
-                "target": [0, 0, 240],
-                "distance": 130,
-                "azimuth": 200,
-                "elevation": 9,
-                "field_of_view": 50,
-            },
-            "sun": {"kind": "direction", "azimuth": 110, "elevation": 34},
-        },
+        {"camera": _orbit((1150, -300, 240), 90, 200, 8), "sun": _sun(110, 34), "view": {"exposure": -7.0}},
     ),
 }
 
@@ -125,4 +95,6 @@ PHENOMENON = Phenomenon(
     presets=PRESETS,
     bakes=bakes,
     open=ForestRenderer,
+    world=world_arrays,
+    world_needs=NEEDS,
 )

@@ -61,7 +61,7 @@ class Cover(Model):
     """Where trees may stand."""
 
     clearings: float = param(
-        0.12,
+        0.08,
         label="Clearings",
         help="Share of the land left open in glades and meadows.",
         unit="ratio",
@@ -71,7 +71,7 @@ class Cover(Model):
         step=0.01,
     )
     glade_size: float = param(
-        160.0,
+        260.0,
         label="Size of the glades",
         help="Length over which forest turns to meadow and back.",
         unit="m",
@@ -132,7 +132,7 @@ class ForestState(SceneState):
 
     scene: Literal["forest"] = "forest"
     camera: Camera = param(
-        Orbit(target=(0.0, 0.0, 180.0), distance=900.0, azimuth=200.0, elevation=22.0),
+        Orbit(target=(200.0, 200.0, 280.0), distance=2300.0, azimuth=140.0, elevation=24.0),
         label="Camera",
         help="Where the picture is taken from.",
         cost="host",

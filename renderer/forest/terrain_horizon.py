@@ -100,10 +100,13 @@ def sector_range(sector: int, sectors: int, azimuths: int) -> np.ndarray:
 def bake_terrain_horizon(
     arguments: dict[str, Any], inputs: dict[str, Arrays], progress: Callable[[float, str], None]
 ) -> Arrays:
-    """Smallest elevation above which every direction of a sector is clear of the terrain.
+    """Smallest elevation above which every direction of a sector is clear of the land and its stands.
+
+    The sweep runs over the stands' tops: between two wooded points that is the terrain's own horizon, and a glade sees the
+    forest's edge around it, which the canopy's own horizon over the tile cannot know.
 
     Args:
-        arguments: `sectors`, 4 to 32. inputs: `terrain`, with `elevation` (N, N) [m].
+        arguments: `sectors`, 4 to 32. inputs: `terrain`, with `surface` (N, N) [m].
 
     Returns:
         `sectors` float32 [chi, N, N] [rad], at least 0, from the horizontal; sector k is centred at azimuth 2 pi k /
@@ -111,7 +114,7 @@ def bake_terrain_horizon(
 
     Source: Cohen 2004, section 3.1, phi_min; formulas i for the sweep in place of his cube maps.
     """
-    heights = np.ascontiguousarray(inputs["terrain"]["elevation"], np.float64)
+    heights = np.ascontiguousarray(inputs["terrain"]["surface"], np.float64)
     sectors = int(arguments["sectors"])
     result = np.zeros((sectors, *heights.shape), np.float32)
     owners: list[list[int]] = [[] for _ in range(AZIMUTHS)]

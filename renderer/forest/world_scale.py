@@ -17,5 +17,8 @@ TILE_SIDE = 40.0
 VOXEL = 0.625
 """Side of a voxel of the pattern [m]."""
 
-REACH = 9000.0
+REACH = 30000.0
 """Distance [m] beyond which nothing of the forest is drawn."""
+
+STAND_TOP = 15.0
+"""Height of a closed stand's surface over the ground [m]: what its edge casts on a glade."""

@@ -27,7 +27,10 @@ class DoubleHorizonMap(ForestTechnique):
     textures: ClassVar[Mapping[str, str]] = {"terrain": "sampler2D", "canopy": "sampler2D"}
     wrap: ClassVar[Mapping[str, Literal["clamp", "repeat"]]] = {"canopy": "repeat"}
 
-    extra_declarations: ClassVar[tuple[str, ...]] = ("uniform float shadow_low; // normalised height of the low map",)
+    extra_declarations: ClassVar[tuple[str, ...]] = (
+        "uniform float shadow_low; // normalised height of the low map",
+        "uniform float shadow_top; // normalised height of the top map",
+    )
 
     kind: Literal["double_horizon_map"] = "double_horizon_map"
     sectors: Literal[4, 8, 16, 32] = param(
@@ -35,6 +38,16 @@ class DoubleHorizonMap(ForestTechnique):
         label="Sectors",
         help="Azimuth sectors of the maps; the thesis has 4.",
         cost="bake",
+        source="Cohen 2004, section 3.1",
+    )
+    height_top: float = param(
+        0.75,
+        label="Height of the top map",
+        help="Normalised canopy height of the upper probes: the treetops.",
+        unit="ratio",
+        cost="bake",
+        ge=0.05,
+        le=1,
         source="Cohen 2004, section 3.1",
     )
     height_low: float = param(
@@ -64,12 +77,12 @@ class DoubleHorizonMap(ForestTechnique):
         """The terrain's horizon and the canopy's, in this many sectors."""
         return [
             terrain_horizon_bake(terrain, self.sectors),
-            canopy_horizon_bake(pattern, self.sectors, self.height_low),
+            canopy_horizon_bake(pattern, self.sectors, [self.height_top, self.height_low]),
         ]
 
     def frame_key(self, state: ForestState) -> tuple[Any, ...]:
         """The maps in use and the azimuth at which they are read."""
-        return (self.kind, self.sectors, self.height_low, round(angles(state.sun)[0], 7))
+        return (self.kind, self.sectors, self.height_top, self.height_low, round(angles(state.sun)[0], 7))
 
     def frame_textures(self, state: ForestState, baked: Mapping[str, Arrays]) -> dict[str, np.ndarray]:
         """Horizon elevation [rad] at the sun's azimuth: `terrain` (N, N) and `canopy` (J, I[, 2])."""
@@ -79,4 +92,4 @@ class DoubleHorizonMap(ForestTechnique):
 
     def constants(self) -> dict[str, float]:
         """The height that the low map was baked for."""
-        return {"shadow_low": self.height_low}
+        return {"shadow_low": self.height_low, "shadow_top": max(self.height_top, self.height_low + 0.01)}

@@ -55,7 +55,7 @@ class HorizonMap(ForestTechnique):
 
     def bakes(self, state: ForestState, terrain: Bake, pattern: Bake) -> list[Bake]:
         """The terrain's horizon and the canopy's, in this many sectors."""
-        return [terrain_horizon_bake(terrain, self.sectors), canopy_horizon_bake(pattern, self.sectors, self.height)]
+        return [terrain_horizon_bake(terrain, self.sectors), canopy_horizon_bake(pattern, self.sectors, [self.height])]
 
     def frame_key(self, state: ForestState) -> tuple[Any, ...]:
         """The maps in use and the azimuth at which they are read."""
@@ -66,5 +66,5 @@ class HorizonMap(ForestTechnique):
         azimuth = angles(state.sun)[0]
         return {
             "terrain": terrain_at(baked["terrain_horizon"], azimuth),
-            "canopy": at_azimuth(baked["canopy_horizon"]["sectors"][1], azimuth),
+            "canopy": at_azimuth(baked["canopy_horizon"]["sectors"][0], azimuth),
         }

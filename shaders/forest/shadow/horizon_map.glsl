@@ -1,12 +1,13 @@
 // Single horizon map. Max 1988; Cohen 2004, section 3.1 (one map) and 7.2 (degraded combination).
 // Symbols: Gamma horizon elevation [rad] at the sun's azimuth; phi sun_elevation [rad]; eps shadow_softness [rad].
 // Deviations: elevation is measured from the horizontal everywhere, not from the ground's tangent plane; the map is split
-// in a terrain part and a tile part, of which the higher counts; the two sector axes are blended before the frame.
+// in a terrain part (with the stands' tops) and a tile part (under trees only), of which the higher counts; the two sector axes are blended before the frame.
 // Blind to gaps under crowns: one angle per sector. One height stands for the whole canopy.
 
 #include "forest/horizon_threshold.glsl"
 
 float shadow_visibility(vec3 position, float h, vec2 uv) {
-    float gamma = max(texture(shadow_terrain, terrain_coordinate(position.xy)).r, texture(shadow_canopy, uv).r);
+    float canopy = textureLod(shadow_canopy, uv, 0.0).r * covered(position.xy);
+    float gamma = max(textureLod(shadow_terrain, terrain_coordinate(position.xy), 0.0).r, canopy);
     return mix(1.0, horizon_lit(gamma, sun_elevation, shadow_softness), shadow_strength);
 }
