@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import functools
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from typing import Annotated, Any, TypeVar
 
@@ -24,7 +25,7 @@ T = TypeVar("T")
 class Hub:
     """The session, the settings and the threads of one server.
 
-    Encoding, short calls of the session and long renders have threads of their own: none waits behind another kind.
+    Encoding, short calls, renders and other work of seconds have threads of their own: none waits behind another kind.
     """
 
     def __init__(self, session: RenderSession, settings: Settings) -> None:
@@ -34,9 +35,10 @@ class Hub:
         self.encoders = ThreadPoolExecutor(2, "encode")
         self.callers = ThreadPoolExecutor(8, "call")
         self.renderers = ThreadPoolExecutor(2, "render")
+        self.workers = ThreadPoolExecutor(4, "work")
         self.jobs = Jobs(settings, self.metrics)
         self.streams: set[Any] = set()
-        self.renders_waiting = 0
+        self._admitted = 0
         self.thumbnails: dict[str, bytes] = {}
         self.thumbnail_locks: dict[str, asyncio.Lock] = {}
 
@@ -45,6 +47,15 @@ class Hub:
         return await asyncio.get_running_loop().run_in_executor(
             self.callers, functools.partial(function, *arguments, **named)
         )
+
+    async def work(self, function: Callable[..., T], *arguments: Any) -> T:
+        """Run something that may take seconds off the event loop.
+
+        Raises:
+            Busy: as much waits as may.
+        """
+        with self.admitted():
+            return await asyncio.get_running_loop().run_in_executor(self.workers, function, *arguments)
 
     def check_size(self, width: int, height: int, pixels: int | None = None) -> None:
         """Refuse a picture that is too large.
@@ -60,24 +71,25 @@ class Hub:
         if width * height > limit:
             raise LimitError("width", f"{width} x {height} pixels are too many", f"width x height at most {limit}")
 
-    def enter_render(self) -> None:
-        """Count one more picture asked over HTTP.
+    @contextlib.contextmanager
+    def admitted(self) -> Iterator[None]:
+        """Count one more piece of work asked over HTTP.
 
         Raises:
-            Busy: as many wait as may.
+            Busy: as much waits as may.
         """
-        if self.renders_waiting >= self.settings.renders:
-            raise Busy("", "too many pictures are waiting to be drawn", f"{self.settings.renders} at once")
-        self.renders_waiting += 1
-
-    def leave_render(self) -> None:
-        """The picture was drawn, or is no longer wanted."""
-        self.renders_waiting -= 1
+        if self._admitted >= self.settings.requests:
+            raise Busy("", "the server is busy with other requests", f"{self.settings.requests} at once")
+        self._admitted += 1
+        try:
+            yield
+        finally:
+            self._admitted -= 1
 
     async def close(self) -> None:
         """Cancel what runs and join every thread."""
         await self.jobs.close()
-        for pool in (self.encoders, self.callers, self.renderers):
+        for pool in (self.encoders, self.callers, self.renderers, self.workers):
             await asyncio.to_thread(pool.shutdown, True, cancel_futures=True)
 
 

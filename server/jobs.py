@@ -8,7 +8,7 @@ import secrets
 import threading
 import time
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import CancelledError, ThreadPoolExecutor
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
@@ -161,7 +161,7 @@ class Jobs:
                 loop = asyncio.get_running_loop()
                 job.result = await loop.run_in_executor(self._threads, functools.partial(work, job))
             outcome, job.fraction, job.words, job.seconds_left = "done", 1.0, "done", 0.0
-        except (Cancelled, asyncio.CancelledError):
+        except (Cancelled, CancelledError, asyncio.CancelledError):
             job.words = "cancelled"
         except Exception as failure:  # told in the job's document; unexpected ones are logged
             outcome, job.errors, job.words = "failed", said(failure), "failed"

@@ -27,29 +27,31 @@ async def draw(hub: Hub, request: Request, state: Any, width: int, height: int) 
         Cancelled: the client left.
     """
     hub.check_size(width, height)
-    hub.enter_render()
-    left = asyncio.create_task(_left(request))
-    try:
-        if not await hub.call(hub.session.prepared, state):
-            preparation = await hub.call(hub.session.prepare, state)
-            try:
-                await _unless(left, asyncio.wrap_future(preparation.future))
-            finally:
-                preparation.cancel()  # no effect on what is finished; a client that left wants the rest no more
-        stop = _Stop()
-        drawing = asyncio.get_running_loop().run_in_executor(
-            hub.renderers, hub.session.render, state, width, height, stop.check
-        )
+    with hub.admitted():
+        left = asyncio.create_task(_left(request))
         try:
-            picture = await _unless(left, drawing)
-        except Cancelled:
-            stop.asked = True
-            raise
-        hub.metrics.pictures.inc()
-        return picture
-    finally:
-        left.cancel()
-        hub.leave_render()
+            return await _draw(hub, left, state, width, height)
+        finally:
+            left.cancel()
+
+
+async def _draw(hub: Hub, left: asyncio.Task[None], state: Any, width: int, height: int) -> facade.Picture:
+    if not await hub.call(hub.session.prepared, state):
+        preparation = await hub.call(hub.session.prepare, state)
+        try:
+            await _unless(left, asyncio.wrap_future(preparation.future))
+        finally:
+            preparation.cancel()  # no effect on what is finished; a client that left wants the rest no more
+    stop = _Stop()
+    loop = asyncio.get_running_loop()
+    drawing = loop.run_in_executor(hub.renderers, hub.session.render, state, width, height, stop.check)
+    try:
+        picture = await _unless(left, drawing)
+    except Cancelled:
+        stop.asked = True
+        raise
+    hub.metrics.pictures.inc()
+    return picture
 
 
 class _Stop:

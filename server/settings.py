@@ -82,10 +82,10 @@ class Settings(Model):
         ge=1,
         le=30 * 86400,
     )
-    renders: int = param(
+    requests: int = param(
         16,
-        label="Renders",
-        help="Pictures asked over HTTP that may wait at once",
+        label="Requests",
+        help="Pictures, measurements and uploads that may wait at once",
         unit="count",
         cost="host",
         ge=1,

@@ -45,7 +45,7 @@ async def upload(request: Request, hub: TheHub) -> Response:
         path = Path(folder) / "upload"  # the client's name is no path
         try:
             name = await receive(request, path, hub.settings.upload_bytes, hub.call)
-            answer = await hub.call(hub.session.add_asset, path, name)
+            answer = await hub.work(hub.session.add_asset, path, name)
         except InputError:
             hub.metrics.uploads.labels("refused").inc()
             raise

@@ -60,7 +60,7 @@ def _value(text: str) -> Any:
 
 
 async def _measure(request: Request, hub: Hub, quantity: str, arguments: dict[str, Any]) -> Response:
-    found = await hub.call(_run, hub, quantity, arguments)
+    found = await hub.work(_run, hub, quantity, arguments)
     if NPZ in request.headers.get("accept", ""):
         return Response(await hub.call(_npz, found), media_type=NPZ)
     return Json(

@@ -123,7 +123,7 @@ def test_too_many_pictures_at_once_are_refused_with_a_time_to_retry(tmp_path: Pa
     from server.app import create_app
 
     session.draw_seconds = 0.4
-    app = create_app(session, Settings(hosts="testserver", renders=1))
+    app = create_app(session, Settings(hosts="testserver", requests=1))
     with TestClient(app, raise_server_exceptions=False) as client:
         first = threading.Thread(
             target=client.post, args=("/api/render",), kwargs={"json": {**SMALL, "width": 64, "height": 64}}
