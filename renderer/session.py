@@ -14,16 +14,20 @@ from renderer.core.cache import AssetStore, Cache
 from renderer.core.channel import Progress
 from renderer.core.errors import InputError
 from renderer.core.params import merge, set_path, validate
-from renderer.core.registry import phenomena, phenomenon, techniques
-from renderer.core.technique import Bake, BakedArrays
+from renderer.core.registry import phenomena, phenomenon
+from renderer.core.technique import Arrays, Bake, BakedArrays
 from renderer.core.work import Workers
+from renderer.describing import slots_of
 from renderer.gl.thread import GLThread
 from renderer.picture import Frame, Picture
-from renderer.view import Painter, View
+from renderer.view import Painter, Place, View
+from renderer.world.sampling import offset
 from renderer.world.state import SceneState, migrate, samples_of
 
 if TYPE_CHECKING:
+    from renderer.comparing import Comparison
     from renderer.study.measure import Measurement
+    from renderer.truth import Judge
 
 Report = Callable[[Progress], None]
 
@@ -95,17 +99,6 @@ class Session:
             }
             for name, preset in found.presets.items()
         }
-        slots = [
-            {
-                "name": slot.name,
-                "title": slot.title,
-                "help": slot.help,
-                "contract": slot.contract,
-                "default": slot.default,
-                "techniques": [self._technique(scene, slot.name, kind) for kind in techniques(scene, slot.name)],
-            }
-            for slot in found.slots
-        ]
         return {
             "name": found.name,
             "title": found.title,
@@ -113,7 +106,7 @@ class Session:
             "schema": found.state.model_json_schema(),
             "defaults": self.state(scene).model_dump(mode="json"),
             "presets": presets,
-            "slots": slots,
+            "slots": slots_of(found, self.gl.info.version),
         }
 
     def state(
@@ -191,11 +184,43 @@ class Session:
         Raises:
             LimitError: larger than this machine can draw.
         """
+        return self.draw(state, width, height, samples_of(state.quality), on_progress=on_progress)
+
+    def draw(
+        self,
+        state: SceneState,
+        width: int,
+        height: int,
+        samples: int,
+        place: Place = offset,
+        on_progress: Report | None = None,
+    ) -> Picture:
+        """As `render`, with so many samples, each at its `place` in the pixel; blocks."""
         if not self.prepared(state):
             self.prepare(state, on_progress).future.result()
-        return self.gl.submit(
-            self._painter.picture, state, self._arrays(state), (width, height), samples_of(state.quality)
-        ).result()
+        arrays = self._arrays(state)
+        return self.gl.submit(self._painter.picture, state, arrays, (width, height), samples, place).result()
+
+    def compute(self, bake: Bake, on_progress: Report | None = None) -> Arrays:
+        """The arrays of one bake, from the cache or from a worker process; blocks.
+
+        Raises:
+            Cancelled: by `on_progress`.
+        """
+        return self._workers.run(bake, self.cache, on_progress).future.result()
+
+    def compare(
+        self,
+        state: SceneState,
+        width: int,
+        height: int,
+        on_progress: Report | None = None,
+        judge: Judge = "combination",
+    ) -> Comparison:
+        """Compare the converged picture of a state with its reference: see `renderer.comparing`; blocks."""
+        from renderer import comparing
+
+        return comparing.compare(self, state, width, height, on_progress, judge)
 
     def view(self) -> View:
         """A canvas of its own: its mean of samples, and its mailbox on the GL thread."""
@@ -269,16 +294,3 @@ class Session:
     def _arrays(self, state: SceneState) -> dict[str, BakedArrays]:
         with self._lock:
             return {bake.name: self._loaded[bake_key(bake)] for bake in self._bakes(state)}
-
-    def _technique(self, scene: str, slot: str, kind: str) -> dict[str, Any]:
-        technique = techniques(scene, slot)[kind]
-        needs, has = technique.requires, self.gl.info.version
-        missing = f"requires OpenGL {needs[0]}.{needs[1]}; this machine has {has[0]}.{has[1]}" if has < needs else ""
-        return {
-            "kind": kind,
-            "title": technique.title,
-            "caption": technique.caption,
-            "paper": technique.paper,
-            "available": not missing,
-            "why_not": missing,
-        }

@@ -17,6 +17,9 @@ from renderer.world.sampling import offset
 from renderer.world.state import SceneState, samples_of
 
 Baked = Mapping[str, BakedArrays]
+Place = Callable[[int], tuple[float, float]]
+"""Where in its pixel a sample lies, by its number; from the top-left corner."""
+
 WHITE = (1.0, 1.0, 1.0)
 BLACK = (0.0, 0.0, 0.0)
 
@@ -29,8 +32,10 @@ class Painter:
         self._renderers: dict[str, SceneRenderer] = {}
         self._tone: ToneMap | None = None
 
-    def add_samples(self, gl: GL, sums: Accumulator, state: SceneState, baked: Baked, count: int) -> None:
-        """Add the next `count` samples of a state's picture to its sum."""
+    def add_samples(
+        self, gl: GL, sums: Accumulator, state: SceneState, baked: Baked, count: int, place: Place = offset
+    ) -> None:
+        """Add the next `count` samples of a state's picture to its sum, each at its `place` in the pixel."""
         if state.scene not in self._renderers:
             made = phenomenon(state.scene).open(gl)
             gl.at_close(made)
@@ -38,7 +43,7 @@ class Painter:
         drawer = self._renderers[state.scene]
         for _ in range(count):
             sample = sums.samples
-            sums.draw(sample, lambda n=sample: drawer.draw(state, baked, sums.size, offset(n), n))  # type: ignore[misc]
+            sums.draw(sample, lambda n=sample: drawer.draw(state, baked, sums.size, place(n), n))  # type: ignore[misc]
 
     def displayed(self, gl: GL, sums: Accumulator, state: SceneState) -> Any:
         """The picture as displayed, (height, width, 3) uint8."""
@@ -54,12 +59,14 @@ class Painter:
         )
         return self._tone.read_rgb8()
 
-    def picture(self, gl: GL, state: SceneState, baked: Baked, size: tuple[int, int], samples: int) -> Picture:
-        """Draw a whole picture."""
+    def picture(
+        self, gl: GL, state: SceneState, baked: Baked, size: tuple[int, int], samples: int, place: Place = offset
+    ) -> Picture:
+        """Draw a whole picture of so many samples, each at its `place` in the pixel."""
         started = time.perf_counter()
         sums = Accumulator(gl, *size)
         try:
-            self.add_samples(gl, sums, state, baked, samples)
+            self.add_samples(gl, sums, state, baked, samples, place)
             rgb8 = self.displayed(gl, sums, state)
             linear = sums.read_mean()
         finally:

@@ -113,6 +113,9 @@ class Phenomenon:
         presets: named patches of the default document, with a title each.
         bakes: what a state needs precomputed, inputs first.
         open: makes its renderer on the GL thread.
+        world: `(state, arrays of the bakes by name) -> plain arrays and numbers`: what is drawn, whatever the
+            techniques, for a reference that shares no code with them.
+        world_needs: names of the bakes that `world` reads.
     """
 
     name: str
@@ -123,6 +126,8 @@ class Phenomenon:
     presets: Mapping[str, Preset]
     bakes: Callable[[Any], list[Bake]]
     open: Callable[[Any], SceneRenderer]
+    world: Callable[[Any, Mapping[str, Arrays]], dict[str, Any]]
+    world_needs: tuple[str, ...]
 
 
 @dataclass(frozen=True)

@@ -27,9 +27,6 @@ COLUMNS = 6
 NUDGE = 1e-6
 """Metres by which a ray is looked at beyond a border, to know the cell it enters."""
 
-FAR = 5e4
-"""Metres after which a ray that still skims the endless continuation of the ground is let go."""
-
 SAME_FOOT = 0.5
 """Feet nearer than this, m, are one tree: stored offsets are exact to 1/32 m, and trees stand metres apart."""
 
@@ -196,11 +193,11 @@ def march(scene, o, d, s, tau, limit, step, solid, mode, own, record):
     if d[2] < 0.0 and o[2] + d[2] * s > ceiling:
         s = (ceiling - o[2]) / d[2]
     n = 0
-    while s < FAR and not (d[2] >= 0.0 and o[2] + d[2] * s > ceiling):
+    while s < scene.reach and not (d[2] >= 0.0 and o[2] + d[2] * s > ceiling):
         x, y = x0 + dx * (s + NUDGE), y0 + dy * (s + NUDGE)
         column, row = math.floor(x / BLOCK), math.floor(y / BLOCK)
         end = min(_exit(x0, dx, column * BLOCK, (column + 1) * BLOCK), _exit(y0, dy, row * BLOCK, (row + 1) * BLOCK))
-        end = min(max(end, s + NUDGE), FAR + 1.0)
+        end = min(max(end, s + NUDGE), scene.reach)
         low = o[2] + d[2] * (end if d[2] < 0.0 else s)
         if low > scene.block_top[min(max(row, 0), blocks - 1), min(max(column, 0), blocks - 1)] + scene.height:
             s = end

@@ -53,6 +53,8 @@ class ForestWorld:
         e_sun: irradiance on a plane facing the sun, W m-2, by channel.
         e_sky: irradiance of the sky on the horizontal.
         sun: unit vector to the sun.
+        reach: distance along a ray beyond which nothing is met, m: the ground continues without end, and a ray that
+            skims it must be let go.
         background: radiance behind everything for directions (M, 3) -> (M, 3); None leaves it empty (alpha < 1).
     """
 
@@ -72,6 +74,7 @@ class ForestWorld:
     e_sun: Colour3
     e_sky: Colour3
     sun: Colour3
+    reach: float = 5e4
     background: Callable[[Floats], Floats] | None = None
 
     def __post_init__(self) -> None:
@@ -93,7 +96,7 @@ class ForestWorld:
                 raise InputError(name, f"is {getattr(self, name).dtype} {getattr(self, name).shape}", f"uint8 {atlas}")
         if self.tile.shape != (2, 2, 8, 2) or int(self.tile.max()) >= TILES:
             raise InputError("tile", "is no tile table", f"(2, 2, 8, 2), each below {TILES}")
-        for name in ("cell", "canopy_height", "tile_side", "voxel"):
+        for name in ("cell", "canopy_height", "tile_side", "voxel", "reach"):
             if not (math.isfinite(getattr(self, name)) and getattr(self, name) > 0):
                 raise InputError(name, "must be a positive length")
         if not (np.isfinite(self.elevation).all() and np.isfinite(self.cover).all()):
@@ -127,6 +130,7 @@ class Scene(NamedTuple):
     e_sun: Floats
     e_sky: Floats
     sun: Floats
+    reach: float
 
 
 NOWHERE, EVERYWHERE, SOMEWHERE = 0, 1, 2
@@ -147,7 +151,7 @@ def prepare(world: ForestWorld) -> Scene:
         safe=_safe(world.colour[..., 3]), tile=np.ascontiguousarray(world.tile, np.uint8), seed=int(world.seed),
         tint=float(world.tint_strength), ground=np.array(world.ground_albedo, np.float64),
         e_sun=np.array(world.e_sun, np.float64), e_sky=np.array(world.e_sky, np.float64),
-        sun=np.array(world.sun, np.float64))
+        sun=np.array(world.sun, np.float64), reach=float(world.reach))
 
 
 def _block_top(z: Floats) -> Floats:

@@ -109,7 +109,7 @@ def _point(
 
     pairing = [line["pairing"] for line in errors if line.get("pairing") is not None]
     return Point(dict(techniques), middle(errors, "relative_rmse"), max(line["relative_rmse"] for line in errors),
-                 middle(errors, "flip_mean"), middle(errors, "relative_rmse_gained"), middle(times, "frame_ms"),
+                 middle(errors, "flip_mean"), middle(errors, "relative_rmse_after_gain"), middle(times, "frame_ms"),
                  middle(times, "yardsticks"), max(pairing, default=float("nan")), len(errors), False)
 
 

@@ -147,7 +147,7 @@ def compare(picture: Drawn, truth: Drawn) -> dict[str, Any]:
     found = {
         "relative_rmse": relative_rmse(colours, truth.linear[..., :3]),
         "gain": gain,
-        "relative_rmse_gained": relative_rmse(colours * gain, truth.linear[..., :3]),
+        "relative_rmse_after_gain": relative_rmse(colours * gain, truth.linear[..., :3]),
         "flip_mean": seen.mean,
         "flip_p95": seen.p95,
         "reference_standard_error": truth.standard_error,

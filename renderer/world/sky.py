@@ -234,3 +234,14 @@ def sky_radiance(now: SkyNow, sun_direction: Floats, directions: Floats) -> Floa
     y = np.sqrt(np.arcsin(np.clip(directions[..., 2], 0.0, 1.0)) / (0.5 * np.pi)) * (rows - 1)
     x = np.sqrt(azimuth / np.pi) * (columns - 1)
     return atmosphere.bilinear(now.view.astype(np.float64), y, x)
+
+
+def sky_sun_disc(now: SkyNow, sun_direction: Floats, directions: Floats) -> Floats:
+    """Radiance of the sun's disc above the horizon, in W m-2 sr-1: twin of `sky_sun_disc` in `shaders/lib/sky.glsl`.
+
+    Args:
+        now, sun_direction, directions: as in `sky_radiance`.
+    """
+    chord = 2.0 * math.sin(0.5 * ANGULAR_RADIUS)
+    inside = (np.linalg.norm(directions - sun_direction, axis=-1) < chord) & (directions[..., 2] > 0.0)
+    return np.where(inside[..., None], now.disc_radiance, 0.0)

@@ -49,7 +49,7 @@ def test_raw_results_carry_errors_machine_parameters_and_seed(tmp_path: Path) ->
     assert first["machine"] == MACHINE
     assert first["pairing"] == pytest.approx(0.3 / 0.2)
     # one gain makes a flat picture equal to a flat reference
-    assert first["relative_rmse_gained"] == pytest.approx(0, abs=1e-12)
+    assert first["relative_rmse_after_gain"] == pytest.approx(0, abs=1e-12)
     assert first["gain"] == pytest.approx(1 / 1.1)
     assert first["reference_standard_error"] == 0.005
 
@@ -154,7 +154,7 @@ def test_summary_table_and_chart_files(tmp_path: Path) -> None:
 
 def test_the_chart_shows_what_it_is_given() -> None:
     base = {"kind": "error", "preset": "p", "sun": "s", "parameters": {}, "seed": 0, "machine": MACHINE}
-    lines = [{**base, "techniques": {"shadow": kind}, "relative_rmse": e, "relative_rmse_gained": e, "flip_mean": e}
+    lines = [{**base, "techniques": {"shadow": kind}, "relative_rmse": e, "relative_rmse_after_gain": e, "flip_mean": e}
              for kind, e in ERRORS.items()]
     lines += [{**line, "kind": "time", "frame_ms": TIMES[line["techniques"]["shadow"]]} for line in lines]
     axes = speed_accuracy(summarise(lines), "x", "shadow").axes[0]

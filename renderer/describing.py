@@ -1,0 +1,44 @@
+"""A scene's slots and techniques as documents, for the page and the command line."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from renderer.core.registry import techniques
+from renderer.core.technique import Phenomenon, Technique
+
+
+def slots_of(found: Phenomenon, version: tuple[int, int]) -> list[dict[str, Any]]:
+    """Every slot of a phenomenon with its techniques.
+
+    Args:
+        found: the phenomenon.
+        version: of the OpenGL at hand; a technique that needs a later one is not available, with the reason.
+    """
+    return [
+        {
+            "name": slot.name,
+            "title": slot.title,
+            "help": slot.help,
+            "contract": slot.contract,
+            "default": slot.default,
+            "techniques": [
+                _technique(kind, technique, version) for kind, technique in techniques(found.name, slot.name).items()
+            ],
+        }
+        for slot in found.slots
+    ]
+
+
+def _technique(kind: str, technique: type[Technique], version: tuple[int, int]) -> dict[str, Any]:
+    needed = technique.requires
+    missing = version < needed
+    why = f"requires OpenGL {needed[0]}.{needed[1]}; this machine has {version[0]}.{version[1]}" if missing else ""
+    return {
+        "kind": kind,
+        "title": technique.title,
+        "caption": technique.caption,
+        "paper": technique.paper,
+        "available": not missing,
+        "why_not": why,
+    }

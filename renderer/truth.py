@@ -1,0 +1,175 @@
+"""Reference pictures of a state: its world as plain arrays, handed to the reference of its phenomenon.
+
+A reference is a bake like any other: it runs in a worker process, with progress and cancellation, and its result is
+kept under a key of its content, in which the techniques, the quality and the view of the state have no part.
+"""
+
+from __future__ import annotations
+
+import functools
+import hashlib
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+
+from renderer import reference
+from renderer.core.params import validate
+from renderer.core.registry import phenomenon
+from renderer.core.technique import Arrays, Bake
+from renderer.world.camera import rays
+from renderer.world.sampling import offsets
+from renderer.world.state import SceneState
+
+POSITIONS = 16
+"""Sub-pixel positions of a reference, and of the converged picture that is compared with it."""
+
+SECONDS_PER_RAY = 60e-6
+"""What a ray with its shadow rays takes on two cores, to announce the cost."""
+
+NOT_THE_WORLD = ("version", "quality", "view", "time")
+"""Fields of a state, beside its slots, that change no reference."""
+
+Judge = Literal["combination", "shadow"]
+"""What a picture is judged for: `combination` against the full physical reference, `shadow` against exact shadows under
+the picture's own light technique."""
+
+Progress = Callable[[float, str], None]
+
+
+@dataclass(frozen=True)
+class Truth:
+    """A reference picture.
+
+    Attributes:
+        linear: (H, W, 4) float64 premultiplied radiance, W m-2 sr-1, without a background, row 0 at the top.
+        once: the same from one position a pixel, its centre.
+        backdrop: (H, W, 3) mean radiance of the background behind each pixel.
+        standard_error: root mean square over the pixels, relative to the mean radiance.
+        seconds: what it took when it was computed.
+    """
+
+    linear: np.ndarray
+    once: np.ndarray
+    backdrop: np.ndarray
+    standard_error: float
+    seconds: float
+
+
+def truth_bake(state: SceneState, width: int, height: int, judge: Judge = "combination") -> Bake:
+    """The computation of a state's reference.
+
+    Args:
+        state: any state of a scene that has a reference.
+        width, height: pixels.
+        judge: what it is for.
+    """
+    found = phenomenon(state.scene)
+    slots = {slot.name for slot in found.slots}
+    document = state.model_dump(mode="json", exclude={*NOT_THE_WORLD, *slots})
+    options = OPTIONS[state.scene](state, judge)
+    inputs = tuple(bake for bake in found.bakes(state) if bake.name in found.world_needs)
+    arguments = {
+        "state": document,
+        "size": [width, height],
+        "positions": POSITIONS,
+        "options": options,
+        "code": code_of(Path(reference.__path__[0])),
+    }
+    return Bake("reference", bake_truth, arguments, inputs, seconds=width * height * POSITIONS * SECONDS_PER_RAY)
+
+
+@functools.cache
+def code_of(*folders: Path) -> str:
+    """Hash of every source text under some folders: a method that was mended cannot keep what it gave before."""
+    digest = hashlib.sha256()
+    for folder in folders:
+        for path in sorted(folder.rglob("*")):
+            if path.suffix in {".py", ".glsl", ".vert", ".frag"}:
+                digest.update(path.relative_to(folder).as_posix().encode() + path.read_bytes())
+    return digest.hexdigest()
+
+
+def bake_truth(arguments: dict[str, Any], inputs: dict[str, Arrays], progress: Progress) -> Arrays:
+    """Compute a reference.
+
+    Args:
+        arguments: `state` (its techniques do not matter), `size`, `positions`, `options` of the reference.
+        inputs: the bakes that the world needs.
+
+    Returns:
+        `linear`, `once` (H, W, 4), `backdrop` (H, W, 3), `standard_error` (), `seconds` (), as in `Truth`.
+    """
+    found = phenomenon(arguments["state"]["scene"])
+    state: Any = validate(found.state, arguments["state"])
+    world = found.world(state, inputs)
+    background = world.pop("background")
+    size = arguments["size"]
+
+    def looking(place: tuple[float, float]) -> tuple[np.ndarray, np.ndarray]:
+        return rays(state.camera, size[0], size[1], place)
+
+    positions = offsets(arguments["positions"])
+    made = RENDER[state.scene](world, looking, positions, arguments["options"], progress)
+    backdrop = np.zeros((size[1], size[0], 3))
+    for place in positions:
+        directions = looking((float(place[0]), float(place[1])))[1]
+        backdrop += background(directions.reshape(-1, 3)).reshape(directions.shape) / len(positions)
+    return {**made, "backdrop": backdrop.astype(np.float32)}
+
+
+def truth_of(arrays: Arrays) -> Truth:
+    """What `bake_truth` gave, by name."""
+    return Truth(
+        arrays["linear"], arrays["once"], arrays["backdrop"], float(arrays["standard_error"]), float(arrays["seconds"])
+    )
+
+
+def _forest_options(state: Any, judge: Judge) -> dict[str, Any]:
+    """A shadow is judged under the picture's own light; everything else by the voxels' normals."""
+    return {"light": "gouraud" if judge == "shadow" and state.light.kind == "gouraud" else "lambert"}
+
+
+def _forest(
+    world: Mapping[str, Any], looking: Any, positions: np.ndarray, options: Mapping[str, Any], progress: Progress
+) -> Arrays:
+    """March the forest: the pixels' centres first, whose picture alone is what one sample a pixel shows."""
+    from renderer.reference.forest import Options, render
+    from renderer.reference.forest_world import ForestWorld
+
+    forest = ForestWorld(**world)
+    share = 1 / len(positions)
+    first = render(
+        forest, looking, positions[:1], Options(**options), lambda done, words: progress(done * share, words)
+    )
+    if len(positions) == 1:
+        linear, error, seconds = first.radiance, first.standard_error, first.seconds
+    else:
+        # another seed, or the second picture's first sample would repeat the jitter of the first picture's
+        rest = render(
+            forest,
+            looking,
+            positions[1:],
+            Options(**options, seed=Options.seed + 1),
+            lambda done, words: progress(share + done * (1 - share), words),
+        )
+        linear = share * first.radiance + (1 - share) * rest.radiance
+        error = np.hypot(share * first.standard_error, (1 - share) * rest.standard_error)
+        seconds = first.seconds + rest.seconds
+    mean = float(linear[..., :3].mean())
+    relative = float(np.sqrt(np.mean(error**2))) / mean if mean > 0 else 0.0
+    return {
+        "linear": linear,
+        "once": first.radiance,
+        "standard_error": np.array(relative),
+        "seconds": np.array(seconds),
+    }
+
+
+OPTIONS: dict[str, Callable[[Any, Judge], dict[str, Any]]] = {"forest": _forest_options}
+"""Options of each phenomenon's reference."""
+
+RENDER: dict[str, Callable[..., Arrays]] = {"forest": _forest}
+"""How each phenomenon's world becomes a reference picture."""
