@@ -87,10 +87,10 @@ class Hub:
             self._admitted -= 1
 
     async def close(self) -> None:
-        """Cancel what runs and join every thread."""
+        """Cancel what waits; what runs ends with the session, which is closed next."""
         await self.jobs.close()
         for pool in (self.encoders, self.callers, self.renderers, self.workers):
-            await asyncio.to_thread(pool.shutdown, True, cancel_futures=True)
+            pool.shutdown(wait=False, cancel_futures=True)
 
 
 def hub_of(connection: HTTPConnection) -> Hub:

@@ -18,6 +18,8 @@ from server.problems import Busy, Missing, said
 from server.settings import Settings
 
 Status = Literal["queued", "running", "done", "failed", "cancelled"]
+CLOSE_S = 1.0
+"""How long running work may take to notice that the server ends."""
 OVER: frozenset[Status] = frozenset({"done", "failed", "cancelled"})
 
 
@@ -145,13 +147,14 @@ class Jobs:
             self._jobs.pop(job.id, None)
 
     async def close(self) -> None:
-        """Cancel everything and join the threads."""
+        """Cancel everything; work that does not notice in time ends with the session, which is closed next."""
         tasks = [job.task for job in self._jobs.values() if job.task is not None and not job.task.done()]
         for job in list(self._jobs.values()):
             if job.status not in OVER:
                 self.cancel(job)
-        await asyncio.gather(*tasks, return_exceptions=True)
-        await asyncio.to_thread(self._threads.shutdown, True)
+        if tasks:
+            await asyncio.wait(tasks, timeout=CLOSE_S)
+        self._threads.shutdown(wait=False, cancel_futures=True)
 
     async def _run(self, job: Job, work: Callable[[Job], Result]) -> None:
         outcome: Status = "cancelled"

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import asyncio
+import threading
 import time
 from types import SimpleNamespace
 from typing import Any
@@ -115,3 +116,20 @@ async def test_closing_ends_what_runs() -> None:
     await until(job, "running")
     await jobs.close()
     assert job.status == "cancelled"
+
+
+async def test_closing_does_not_wait_for_work_that_listens_to_nothing() -> None:
+    jobs = Jobs(Settings(), Metrics())
+    let_go = threading.Event()
+
+    def deaf(job: Job) -> Result:
+        let_go.wait(30)
+        return Result()
+
+    job = jobs.start("bake", deaf)
+    await until(job, "running")
+    await jobs.close()
+    assert not let_go.is_set()
+    assert job.status == "running"
+    let_go.set()
+    await until(job, "done")
