@@ -10,18 +10,22 @@ from renderer.forest.edge_classes import blend_edges
 from renderer.forest.pattern_kernels import add_transmittance
 
 RINGS, AZIMUTHS = 4, 8
-"""Directions over the hemisphere: rings of equal solid angle, each of equally spaced azimuths."""
+"""Directions over the hemisphere: rings of elevation, each of equally spaced azimuths."""
 
 
-def directions() -> np.ndarray:
-    """Unit vectors (RINGS * AZIMUTHS, 3) that share the hemisphere's solid angle equally."""
-    sine = (np.repeat(np.arange(RINGS), AZIMUTHS) + 0.5) / RINGS
+def directions() -> tuple[np.ndarray, np.ndarray]:
+    """Unit vectors (RINGS * AZIMUTHS, 3) and their shares of the hemisphere's solid angle, summing to 1.
+
+    The sines of the rings' elevations are the nodes of Gauss and Legendre, for whom the dark horizon is no trouble.
+    """
+    nodes, weights = np.polynomial.legendre.leggauss(RINGS)
+    sine = np.repeat((nodes + 1) / 2, AZIMUTHS)
     # Every other ring is turned by half a step, so that no azimuth is looked along twice.
-    azimuth = (np.tile(np.arange(AZIMUTHS), RINGS) + 0.5 * (np.repeat(np.arange(RINGS), AZIMUTHS) % 2)) * (
-        2 * np.pi / AZIMUTHS
-    )
+    turn = 0.5 * (np.repeat(np.arange(RINGS), AZIMUTHS) % 2)
+    azimuth = (np.tile(np.arange(AZIMUTHS), RINGS) + turn) * (2 * np.pi / AZIMUTHS)
     flat = np.sqrt(1 - sine**2)
-    return np.stack([np.sin(azimuth) * flat, np.cos(azimuth) * flat, sine], axis=1)
+    rays = np.stack([np.sin(azimuth) * flat, np.cos(azimuth) * flat, sine], axis=1)
+    return rays, np.repeat(weights / 2 / AZIMUTHS, AZIMUTHS)
 
 
 def sky_share(extinction: np.ndarray, axes: np.ndarray, layer: float, progress: Callable[[float], None]) -> np.ndarray:
@@ -39,10 +43,10 @@ def sky_share(extinction: np.ndarray, axes: np.ndarray, layer: float, progress: 
     """
     extinction = np.ascontiguousarray(extinction, np.float32)
     result, prefix = np.zeros_like(extinction), np.empty_like(extinction)
-    rays = directions()
-    for number, ray in enumerate(rays):
+    rays, shares = directions()
+    for number, (ray, weight) in enumerate(zip(rays, shares, strict=True)):
         shift = (ray[:2] / ray[2] * layer) @ np.linalg.inv(axes)
         parts = max(1, int(np.ceil(np.abs(shift).max() / 2)))
-        add_transmittance(extinction, shift, layer / ray[2], parts, 1 / len(rays), prefix, result)
+        add_transmittance(extinction, shift, layer / ray[2], parts, weight, prefix, result)
         progress((number + 1) / len(rays))
     return blend_edges(result, inner=3.0, outer=8.0)

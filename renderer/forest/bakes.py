@@ -24,7 +24,7 @@ def ground_bake(state: ForestState) -> Bake:
 
 def pattern_bake(state: ForestState) -> Bake:
     """The texture-cell atlas."""
-    return Bake("pattern", bake_pattern, bake_arguments(state.canopy), seconds=20)
+    return Bake("pattern", bake_pattern, bake_arguments(state.canopy), version=2, seconds=12)
 
 
 def terrain_horizon_bake(terrain: Bake, sectors: int) -> Bake:
