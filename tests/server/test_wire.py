@@ -18,8 +18,9 @@ import pytest
 import uvicorn
 import websockets
 
+from renderer.core.errors import InputError
 from server.app import create_app
-from server.cli_serve import address, configure
+from server.cli_serve import address, bind, configure
 from server.protocol import unpack
 from server.settings import Settings
 from tests.server.fake_session import FakeSession
@@ -30,7 +31,7 @@ def running(session: FakeSession, **settings: Any) -> Iterator[tuple[int, uvicor
     """A server on a free port, and its port."""
     chosen = Settings(port=0, **settings)
     config = configure(create_app(session, chosen), chosen)
-    listener = config.bind_socket()
+    listener = bind(chosen)
     server = uvicorn.Server(config)
     thread = threading.Thread(target=server.run, kwargs={"sockets": [listener]})
     thread.start()
@@ -75,6 +76,29 @@ def test_messages_are_not_compressed_again(session: FakeSession) -> None:
 
     with running(session) as (port, _):
         assert asyncio.run(talk(port)) == []
+
+
+def test_small_messages_are_sent_at_once(session: FakeSession) -> None:
+    """Born from 40 ms of latency: a frame waited for the acknowledgement of the message before it."""
+
+    async def option(port: int, server: uvicorn.Server) -> list[int]:
+        client = await opened(port)
+        await idle(client)
+        sockets = [connection.transport.get_extra_info("socket") for connection in server.server_state.connections]
+        options = [found.getsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY) for found in sockets]
+        await client.close()
+        return options
+
+    with running(session) as (port, server):
+        assert asyncio.run(option(port, server)) == [1]
+
+
+def test_a_port_in_use_is_said() -> None:
+    with bind(Settings(port=0)) as taken:
+        taken.listen()
+        with pytest.raises(InputError) as refused:
+            bind(Settings(port=taken.getsockname()[1]))
+        assert refused.value.field == "port"
 
 
 def handshake(port: int) -> socket.socket:
