@@ -102,8 +102,8 @@ def bake_terrain_horizon(
 ) -> Arrays:
     """Smallest elevation above which every direction of a sector is clear of the land and its stands.
 
-    The sweep runs over the stands' tops: between two wooded points that is the terrain's own horizon, and a glade sees the
-    forest's edge around it, which the canopy's own horizon over the tile cannot know.
+    The sweep runs over the stands' tops: between two wooded points that is the terrain's own horizon, and a glade sees
+    the forest's edge around it, which the canopy's own horizon over the tile cannot know.
 
     Args:
         arguments: `sectors`, 4 to 32. inputs: `terrain`, with `surface` (N, N) [m].
