@@ -1,9 +1,9 @@
 """The forest's reference picture: float64, on the CPU, with its own standard error.
 
-Shares no code with the renderer: it receives the world as plain arrays and looks everything up again by itself. A fine
-march (512 steps for a crossing of the layer) integrates every view ray and every shadow ray. The positions of rays
-within the pixels are the caller's, so that a technique's converged picture can use the same ones and the difference
-speaks of the method alone.
+Shares no code with the renderer: it receives the world as plain arrays and looks everything up again by itself. View
+rays are marched at 512 steps for a crossing of the layer; shadow rays at three steps a voxel, which on the default
+scene moves the mean by less than 1e-4 against steps a quarter as long. The positions of rays within the pixels are the
+caller's, so that a technique's converged picture can use the same ones and the difference speaks of the method alone.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ STEPS_PER_CROSSING = 512
 """Steps of a march straight through the layer: what the project calls brute force."""
 
 LONGEST_STEP = 0.3
-"""Longest step of a slanted march, in voxels: below a third of the trilinear filter's width."""
+"""Longest step of a march, in voxels: below a third of the trilinear filter's width."""
 
 CHUNK = 8
 """Rows between two looks at the clock and the caller's wish to stop."""
@@ -47,8 +47,9 @@ class Options:
         within_tree: a tree shades itself.
         light: `lambert` by the voxels' normals, or `gouraud` by the terrain's.
         shadow_rays: strata of sunlight on a leaf's full brightness, one shadow ray each; 0 gives every step its own.
-        steps_per_crossing: steps of a vertical march through the layer.
+        steps_per_crossing: steps of a vertical view march through the layer.
         longest_step: of a slanted one, voxels.
+        shadow_step: of the march to the sun, voxels.
         seed: of the jitter within the strata.
         threads: that march; 0 takes every core.
     """
@@ -61,6 +62,7 @@ class Options:
     shadow_rays: int = 16
     steps_per_crossing: int = STEPS_PER_CROSSING
     longest_step: float = LONGEST_STEP
+    shadow_step: float = LONGEST_STEP
     seed: int = 1
     threads: int = 0
 
@@ -112,7 +114,7 @@ def render(
     offsets = np.asarray(positions, np.float64)
     if offsets.ndim != 2 or offsets.shape[1] != 2 or not len(offsets):
         raise InputError("positions", f"has shape {offsets.shape}", "(S, 2), S at least 1")
-    if options.steps_per_crossing < 1 or options.longest_step <= 0 or options.shadow_rays < 0:
+    if options.steps_per_crossing < 1 or min(options.longest_step, options.shadow_step) <= 0 or options.shadow_rays < 0:
         raise InputError("options", "steps and rays cannot be negative, nor a step without length")
     begun = time.perf_counter()
     scene = prepare(world)
@@ -152,7 +154,11 @@ def _sample(
     """Add one sub-pixel sample of the whole picture, a few rows at a time on every thread."""
     switches = np.array([options.terrain, options.forest_on_ground, options.tree_on_tree, options.within_tree,
                          options.light == "gouraud"])
-    steps = (scene.height / options.steps_per_crossing, options.longest_step * scene.voxel)
+    steps = (
+        scene.height / options.steps_per_crossing,
+        options.longest_step * scene.voxel,
+        options.shadow_step * scene.voxel,
+    )
     quantum = 0.0
     if options.shadow_rays:
         quantum = float(scene.e_sun.mean()) * NOMINAL_ALBEDO / math.pi / options.shadow_rays

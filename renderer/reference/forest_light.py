@@ -13,7 +13,7 @@ import math
 import numpy as np
 from numba import njit
 
-from renderer.reference.forest_lookup import bilinear, channel_at, foot, ground_normal, texel, tint
+from renderer.reference.forest_lookup import bilinear, foot, ground_normal, texel, tint, voxel_at
 from renderer.reference.forest_march import (
     ALL,
     COLUMNS,
@@ -36,8 +36,8 @@ from renderer.reference.forest_march import (
 NOMINAL_ALBEDO = 0.1
 """Albedo of a leaf (linear, mean over channels) that the number of strata refers to: brighter matter gets more rays."""
 
-DEPTH_LIMIT = 14.0
-"""Optical depth after which a march stops: 8e-7 of the light is left."""
+DEPTH_LIMIT = 9.2
+"""Optical depth after which a march stops: a ten-thousandth of the light is left, and takes the colour of the rest."""
 
 LIFT = 1e-3
 """Metres above the ground at which its shadow rays start, so that rounding does not make a facet shade itself."""
@@ -72,37 +72,35 @@ def visibility(scene, switches, x, y, z, step, mode, own, empty):
 
 
 @njit(cache=True, nogil=True)
-def _canopy_light(scene, switches, x, y, event, out):
+def _canopy_light(scene, switches, x, y, event, voxel, out):
     """Unshadowed radiance that matter at a recorded step scatters: out[0:3] from the sky, out[3:6] from the sun."""
     tu, tv, tk = event[TU], event[TV], event[TK]
-    alpha = channel_at(scene.colour, 3, tu, tv, tk)
-    ambient = channel_at(scene.normal, 3, tu, tv, tk)
+    voxel_at(scene, tu, tv, tk, voxel)
     if switches[GOURAUD]:
         nx, ny, nz = ground_normal(scene, x, y)
     else:
-        nx = 2.0 * channel_at(scene.normal, 0, tu, tv, tk) - 1.0
-        ny = 2.0 * channel_at(scene.normal, 1, tu, tv, tk) - 1.0
-        nz = 2.0 * channel_at(scene.normal, 2, tu, tv, tk) - 1.0
+        nx, ny, nz = 2.0 * voxel[4] - 1.0, 2.0 * voxel[5] - 1.0, 2.0 * voxel[6] - 1.0
     length = math.sqrt(nx * nx + ny * ny + nz * nz)
     facing = 0.0
     if length > 0.0:
         facing = max((nx * scene.sun[0] + ny * scene.sun[1] + nz * scene.sun[2]) / length, 0.0)
     foot_x, foot_y = foot(scene, x, y, tu, tv, tk, False)
-    shade = (1.0 + scene.tint * tint(foot_x, foot_y)) / (math.pi * alpha)
+    shade = (1.0 + scene.tint * tint(foot_x, foot_y)) / (math.pi * voxel[3])
     for c in range(3):
-        albedo = channel_at(scene.colour, c, tu, tv, tk) * shade
-        out[c] = albedo * scene.e_sky[c] * ambient
+        albedo = voxel[c] * shade
+        out[c] = albedo * scene.e_sky[c] * voxel[7]
         out[3 + c] = albedo * scene.e_sun[c] * facing
 
 
 @njit(cache=True, nogil=True)
-def _ground_light(scene, switches, x, y, z, step, empty, share, total):
+def _ground_light(scene, switches, x, y, z, step, empty, share, voxel, total):
     """Add the light that bare ground sends up, times `share`."""
     nx, ny, nz = ground_normal(scene, x, y)
     ambient = 1.0
     if bilinear(scene.cover, scene.cell, x, y) > 0.5:
         tu, tv = texel(scene, x, y)
-        ambient = channel_at(scene.normal, 3, tu, tv, 0.0)
+        voxel_at(scene, tu, tv, 0.0, voxel)
+        ambient = voxel[7]
     ambient *= 0.5 * (1.0 + nz)
     facing = max(nx * scene.sun[0] + ny * scene.sun[1] + nz * scene.sun[2], 0.0)
     seen = 0.0
@@ -126,7 +124,7 @@ def _seen(scene, switches, o, d, event, step, empty):
 
 @njit(cache=True, nogil=True)
 def _scatter(
-    scene, switches, o, d, record, light, n, tau, step, shadow_step, quantum, seed, pixel, first, empty, total
+    scene, switches, o, d, record, light, n, tau, shadow_step, quantum, seed, pixel, first, empty, voxel, total
 ):
     """Add what n recorded steps scatter, from optical depth `tau` on.
 
@@ -137,7 +135,8 @@ def _scatter(
         depth = record[e, SIGMA] * record[e, DS]
         weight = math.exp(-tau) * -math.expm1(-depth)
         tau += depth
-        _canopy_light(scene, switches, o[0] + d[0] * record[e, S], o[1] + d[1] * record[e, S], record[e], light[e])
+        x, y = o[0] + d[0] * record[e, S], o[1] + d[1] * record[e, S]
+        _canopy_light(scene, switches, x, y, record[e], voxel, light[e])
         for c in range(3):
             total[c] += weight * light[e, c]
             light[e, 3 + c] *= weight
@@ -157,7 +156,7 @@ def _scatter(
     part, e, passed, variance, before = sum_sun / strata, 0, light[0, 0], 0.0, 0.0
     for k in range(strata):
         target = (k + _uniform(seed, pixel, first + k)) * part
-        while passed < target and e < n - 1:
+        while passed <= target and e < n - 1:
             e += 1
             passed += light[e, 0]
         while light[e, 0] <= 0.0 and e > 0:
@@ -177,13 +176,13 @@ def rows(scene, switches, origins, directions, behind, first, last, step_of, qua
     """Add one sub-pixel sample of rows [first, last) to `picture` (H, W, 4) and its variance to `variances` (H, W).
 
     Args:
-        step_of: (vertical step, longest step) of the march, m.
+        step_of: (vertical step, longest step) of the view march and (step) of the shadow march, m.
         quantum: unshadowed sunlight (mean radiance) per shadow ray; 0 gives every step its own.
     """
     record, light = np.empty((512, COLUMNS)), np.empty((512, 6))
-    empty, total = np.empty((0, COLUMNS)), np.zeros(3)
+    empty, voxel, total = np.empty((0, COLUMNS)), np.empty(8), np.zeros(3)
     width = origins.shape[1]
-    shadow_step = min(step_of[0] / max(abs(scene.sun[2]), 1e-9), step_of[1])
+    shadow_step = step_of[2]
     nowhere = (0.0, 0.0)
     for row in range(first, last):
         for column in range(width):
@@ -197,14 +196,18 @@ def rows(scene, switches, origins, directions, behind, first, last, step_of, qua
                 before = tau
                 status, s, tau, n = march(scene, o, d, s, tau, DEPTH_LIMIT, step, True, ALL, nowhere, record)
                 if n:
-                    more, drawn = _scatter(scene, switches, o, d, record, light, n, before, step, shadow_step, quantum,
-                                           seed, pixel, used, empty, total)
+                    more, drawn = _scatter(scene, switches, o, d, record, light, n, before, shadow_step, quantum, seed,
+                                           pixel, used, empty, voxel, total)
                     variance += more
                     used += drawn
-            through = 0.0 if status == OPAQUE else math.exp(-tau)
-            if status == GROUND:
+            through = math.exp(-tau)
+            if status == OPAQUE:
+                # what lies beyond the limit is taken to scatter like what lies before it
+                total /= 1.0 - through
+                through = 0.0
+            elif status == GROUND:
                 _ground_light(scene, switches, o[0] + d[0] * s, o[1] + d[1] * s, o[2] + d[2] * s, shadow_step, empty,
-                              through, total)
+                              through, voxel, total)
                 through = 0.0
             elif status == LEFT:
                 for c in range(3):

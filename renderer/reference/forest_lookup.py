@@ -80,14 +80,24 @@ def ground_normal(scene: Scene, x: float, y: float) -> tuple[float, float, float
     return -a / length, -b / length, 1.0 / length
 
 
-@njit(cache=True, nogil=True)
-def alpha_at(scene: Scene, tu: float, tv: float, tk: float) -> float:
-    """Opacity 0..1 of one voxel length, trilinear between texel centres, wrapped along the sides."""
+@njit(cache=True, nogil=True, inline="always")
+def _corners(scene: Scene, tu: float, tv: float, tk: float) -> tuple[int, int, int, int, int, int]:
+    """The two texels along each axis around a place, wrapped along the sides and clamped upwards.
+
+    Coordinates come from `texel` or the march, so that a side is left by less than one texel and needs no division.
+    """
     size, layers = scene.colour.shape[2], scene.colour.shape[0]
     i, j, k = math.floor(tu), math.floor(tv), math.floor(tk)
-    u, v, w = tu - i, tv - j, tk - k
-    i0, i1, j0, j1 = i % size, (i + 1) % size, j % size, (j + 1) % size
-    k0, k1 = min(max(k, 0), layers - 1), min(max(k + 1, 0), layers - 1)
+    i0, i1 = (i if i >= 0 else i + size), (i + 1 if i + 1 < size else i + 1 - size)
+    j0, j1 = (j if j >= 0 else j + size), (j + 1 if j + 1 < size else j + 1 - size)
+    return i0, i1, j0, j1, min(max(k, 0), layers - 1), min(max(k + 1, 0), layers - 1)
+
+
+@njit(cache=True, nogil=True)
+def alpha_at(scene: Scene, tu: float, tv: float, tk: float) -> float:
+    """Opacity 0..1 of one voxel length, trilinear between texel centres."""
+    u, v, w = tu - math.floor(tu), tv - math.floor(tv), tk - math.floor(tk)
+    i0, i1, j0, j1, k0, k1 = _corners(scene, tu, tv, tk)
     c = scene.colour
     low = (c[k0, j0, i0, 3] * (1 - u) + c[k0, j0, i1, 3] * u) * (1 - v)
     low += (c[k0, j1, i0, 3] * (1 - u) + c[k0, j1, i1, 3] * u) * v
@@ -97,18 +107,19 @@ def alpha_at(scene: Scene, tu: float, tv: float, tk: float) -> float:
 
 
 @njit(cache=True, nogil=True)
-def channel_at(atlas, channel: int, tu: float, tv: float, tk: float) -> float:
-    """One channel 0..1 of an atlas array, trilinear as `alpha_at`."""
-    size, layers = atlas.shape[2], atlas.shape[0]
-    i, j, k = math.floor(tu), math.floor(tv), math.floor(tk)
-    total = 0.0
-    for dk in range(2):
-        for dj in range(2):
-            for di in range(2):
-                weight = abs(1 - dk - (tk - k)) * abs(1 - dj - (tv - j)) * abs(1 - di - (tu - i))
-                layer = min(max(k + dk, 0), layers - 1)
-                total += weight * atlas[layer, (j + dj) % size, (i + di) % size, channel]
-    return total / 255.0
+def voxel_at(scene: Scene, tu: float, tv: float, tk: float, out) -> None:
+    """All that the atlas holds at a place, trilinear, 0..1: out[0:4] = `colour`, out[4:8] = `normal`."""
+    u, v, w = tu - math.floor(tu), tv - math.floor(tv), tk - math.floor(tk)
+    i0, i1, j0, j1, k0, k1 = _corners(scene, tu, tv, tk)
+    out[:8] = 0.0
+    for corner in range(8):
+        i, fu = (i1, u) if corner & 1 else (i0, 1 - u)
+        j, fv = (j1, v) if corner & 2 else (j0, 1 - v)
+        k, fw = (k1, w) if corner & 4 else (k0, 1 - w)
+        weight = fu * fv * fw / 255.0
+        for c in range(4):
+            out[c] += weight * scene.colour[k, j, i, c]
+            out[4 + c] += weight * scene.normal[k, j, i, c]
 
 
 @njit(cache=True, nogil=True)

@@ -35,8 +35,9 @@ def test_uniform_slab_obeys_beer_and_lambert_along_both_rays(view: tuple, to_sun
     s = tuple(float(c) for c in unit(to_sun))
     found = render(flat(ALPHA, sun=s), looking([[1, 2], [30, -20]], view), CENTRE, EXACT)
     expected = slab(unit(view), np.array(s))
-    # spent by the midpoint rule: (sigma step (1 + mu / nu))^2 / 24 at most, with steps of 0.3 voxels: 4e-5
-    assert found.radiance[0, :, :3] == pytest.approx(np.tile(expected, (2, 1)), rel=6e-5)
+    # spent by the midpoint rule: (sigma step (1 + mu / nu))^2 / 24 at most, with steps of 0.3 voxels: 4e-5;
+    # by the march's end at a ten-thousandth of the light: 1e-4 of the radiance's change behind it
+    assert found.radiance[0, :, :3] == pytest.approx(np.tile(expected, (2, 1)), rel=1.5e-4)
     assert found.radiance[0, :, 3] == pytest.approx(1)
     for spoiled in (
         flat(ALPHA, sun=s, e_sun=tuple(np.array(E_SUN) * np.pi)),
