@@ -101,6 +101,7 @@ export class Panels {
     if (!control) return false;
     for (let fold = control.row.closest("details"); fold; fold = fold.parentElement.closest("details")) fold.open = true;
     control.fail(sentence);
+    control.row.scrollIntoView({ block: "nearest" });
     return control.row.checkVisibility?.() ?? true;
   }
 }

@@ -42,6 +42,8 @@ export class Store extends EventTarget {
   /** The server refused a change: back to what it has, plus what is still on its way. */
   refuse(unsent) {
     this.document = unsent ? merge(this.accepted, unsent) : this.accepted;
+    if (same(this.past.at(-1), this.document)) this.past.pop();
+    this.lastChange = { at: -Infinity, source: "" };
     this.announce("server");
   }
 
