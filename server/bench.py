@@ -92,7 +92,7 @@ def browser(address: str, seconds: float = 5.0, moves: int = 30) -> dict[str, An
     Returns:
         Medians in ms over the moves: `latency_ms` from the pointer's handler to the completed draw on the canvas,
         `render_ms` of the pictures that answered, and `excess_ms` of one over the other; `pictures_per_second` while
-        dragging, with the median linear `scale` and `bytes` of a picture. Where there is no browser, `missing` says why.
+        dragging, with the median linear `scale` and `bytes` of a picture. Without a browser, `missing` says why.
     """
     try:
         from playwright.sync_api import sync_playwright
@@ -109,13 +109,13 @@ def browser(address: str, seconds: float = 5.0, moves: int = 30) -> dict[str, An
         try:
             page = opened.new_page(viewport={"width": VIEW["width"], "height": VIEW["height"]})
             page.goto(f"http://{address}/")
-            _wait(lambda: page.evaluate("window.umbrage !== undefined && umbrage.stats.frames > 0"), "the first picture")
+            _wait(lambda: page.evaluate("window.umbrage !== undefined && umbrage.stats.frames > 0"), "a picture")
             # a draft at rest: nothing but the answer to the pointer is drawn
             page.evaluate("umbrage.store.change({quality: {kind: 'draft'}}, 'quality')")
             _quiet(page)
             page.evaluate(WATCH)
             single, dragged = _single(page, moves), _drag(page, seconds)
-            return {**single, **dragged, "size": [page.evaluate("umbrage.screen.width"), page.evaluate("umbrage.screen.height")]}
+            return {**single, **dragged, "size": page.evaluate("[umbrage.screen.width, umbrage.screen.height]")}
         finally:
             opened.close()
 
@@ -131,7 +131,7 @@ def _single(page: Any, moves: int) -> dict[str, Any]:
         time.sleep(QUIET_S)
         before = page.evaluate("window.seen.length")
         page.mouse.move(x + 20 + 2 * number, y)
-        _wait(lambda n=before: page.evaluate(f"window.seen.slice({n}).some((f) => f.latency !== null)"), "an answer")  # type: ignore[misc]
+        _wait(lambda n=before: page.evaluate(f"window.seen.slice({n}).some((f) => f.latency !== null)"), "an answer")
         answers.append(page.evaluate(f"window.seen.slice({before}).find((f) => f.latency !== null)"))
     page.mouse.up()
     _quiet(page)

@@ -56,7 +56,8 @@ def configure(app: Any, settings: Settings) -> uvicorn.Config:
 def bind(settings: Settings) -> socket.socket:
     """The listening socket, named as TCP in so many words: asyncio sends small messages at once only then.
 
-    Left to the default protocol number 0, it does not set TCP_NODELAY, and every picture would wait 40 ms for the client's delayed acknowledgement.
+    Left to the default protocol number 0, it does not set TCP_NODELAY, and every picture would wait 40 ms for the
+    delayed acknowledgement of the message before it.
 
     Raises:
         InputError: the address cannot be bound to.
