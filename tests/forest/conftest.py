@@ -20,6 +20,7 @@ from renderer.forest.world_scale import CANOPY_HEIGHT, CELL, NODES, REACH, TILE_
 from renderer.gl import source
 from renderer.gl.context import GL
 from renderer.gl.probe import probe
+from renderer.gl.resident import Resident
 from renderer.gl.thread import GLThread
 from renderer.picture import Picture
 from renderer.view import Painter
@@ -58,11 +59,13 @@ def paint(thread: GLThread) -> Paint:
 @pytest.fixture(scope="session")
 def ask(thread: GLThread) -> Ask:
     """Evaluates GLSL of the forest in a world: see `_asked`."""
-    return lambda *args, **keywords: thread.call(_asked, *args, **keywords)
+    residents: list[Resident] = []
+    return lambda *args, **keywords: thread.call(_asked, residents, *args, **keywords)
 
 
 def _asked(
     gl: GL,
+    residents: list[Resident],
     files: Sequence[str],
     body: str,
     inputs: Mapping[str, np.ndarray],
@@ -79,17 +82,23 @@ def _asked(
     """Evaluate GLSL for N inputs among the world's samplers and uniforms.
 
     Args:
+        residents: keeps the textures of the worlds that were asked last; empty at first.
         files: beside `forest/world.glsl`, which always comes first.
         terrain, pattern: bakes; level ground and an empty pattern by default.
         state: for sun, ground and seed. techniques: by slot, whose live parameters are declared and set.
         textures: of those techniques, by their full names. values: more uniforms. declarations: of those.
     """
+    if not residents:
+        residents.append(Resident(gl, 12))
+    kept, held = residents[0], dict[str, Any]()
     state = state or worlds.state()
-    terrain, pattern = terrain or worlds.ground(), pattern or worlds.uniform(0)
+    terrain, pattern, seed = terrain or worlds.ground(), pattern or worlds.uniform(0), state.ground.map_seed
     steepness, top = relief(terrain["elevation"])
+    for key, entry in worlds.together(terrain=terrain, pattern=pattern).items():
+        make = ground_textures if key == "terrain" else pattern_textures
+        held |= kept.get(entry.key, lambda e=entry, m=make: m(gl, e.arrays))  # type: ignore[misc]
+    held |= kept.get(seed, lambda: {"tiles": gl.texture2d(tile_map(seed), "nearest", "repeat")})
     made = {
-        **ground_textures(gl, terrain), **pattern_textures(gl, pattern),
-        "tiles": gl.texture2d(tile_map(state.ground.map_seed), "nearest", "repeat"),
         "scout": gl.texture2d(np.zeros((1, 1), np.float32)),
         **{name: gl.texture2d(np.asarray(a, np.float32), wrap="repeat") for name, a in (textures or {}).items()},
     }
@@ -106,7 +115,7 @@ def _asked(
         given |= uniforms(technique, slot) | technique.constants()
     try:
         return probe(gl, ["forest/world.glsl", *files], body, inputs, outputs, uniforms=given | dict(values or {}),
-                     textures=made, declarations="\n".join([*text, declarations]), defines=LIMITS)
+                     textures=held | made, declarations="\n".join([*text, declarations]), defines=LIMITS)
     finally:
         for texture in made.values():
             texture.release()

@@ -50,7 +50,9 @@ def trace(
     return ask([*FILES, file], TRACE, inputs, 4, techniques={"geometry": technique}, pattern=pattern, terrain=terrain)
 
 
-def slab_error(ask: Callable[..., np.ndarray], technique: Slices | RayMarch, direction: Any, slope: float = 0.0) -> float:
+def slab_error(
+    ask: Callable[..., np.ndarray], technique: Slices | RayMarch, direction: Any, slope: float = 0.0
+) -> float:
     """Error of the transmittance from the canopy's top to the ground, against (1 - alpha)^(path / voxel)."""
     d = np.asarray(direction, float) / np.linalg.norm(direction)
     east = 8.0 * (NODES - 1) / 2

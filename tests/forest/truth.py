@@ -17,11 +17,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from renderer.core.baking import bake_now
+from renderer.core.baking import bake_key, bake_now
 from renderer.core.cache import Cache
 from renderer.core.technique import BakedArrays
-from renderer.core.baking import bake_key
-from renderer.forest.bakes import bakes as bakes_of
 from renderer.forest.renderer import ForestRenderer
 from renderer.forest.state import ForestState
 from renderer.forest.world_scale import CANOPY_HEIGHT, CELL, TILE_SIDE, VOXEL

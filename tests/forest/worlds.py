@@ -31,7 +31,7 @@ Progress = Callable[[float, str], None]
 
 
 def sky(radiance: tuple[float, float, float] = (1e-30, 1e-30, 1e-30)) -> dict[str, np.ndarray]:
-    """The `sky` bake of a sky of one radiance [W m-2 sr-1], black by default, under a sun of `E_SUN` at any elevation."""
+    """The `sky` bake: one radiance [W m-2 sr-1] everywhere, black by default, and a sun of `E_SUN` at any elevation."""
     return {
         "elevations": np.array([-0.4, np.pi / 2]),
         "sun_irradiance": np.tile(E_SUN, (2, 1)).astype(np.float64),
@@ -53,7 +53,10 @@ def uniform(alpha: int, albedo: float = 0.5, ambient: int = 0, layers: slice = s
     colour = np.zeros((*shape, 4), np.uint8)
     colour[layers] = (*(round(albedo * alpha),) * 3, alpha)
     anchor = np.full((*shape, 4), 128, np.uint8)
-    anchor[..., 2:] = 0
+    full = np.arange(LAYERS)[layers] if alpha else np.array([1000])
+    away = np.abs(np.arange(LAYERS)[:, None] - full).min(axis=1)
+    # The ground counts as matter here: a longer skip would pass through a sharp brink unseen.
+    anchor[..., 2], anchor[..., 3] = np.minimum(away, np.arange(LAYERS))[:, None, None], 0
     normal = np.empty((*shape, 4), np.uint8)
     normal[...] = (*UP, ambient)
     level = {"colour": colour, "normal": normal, "anchor": anchor}
@@ -68,11 +71,6 @@ def together(**arrays: Arrays) -> dict[str, BakedArrays]:
                           made)
         for name, made in arrays.items()
     }
-
-
-def at(x: np.ndarray | float) -> np.ndarray:
-    """Column of the terrain grid at x metres east."""
-    return np.asarray(x) / CELL + (NODES - 1) / 2
 
 
 def state(**patch: Any) -> ForestState:

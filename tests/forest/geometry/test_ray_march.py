@@ -1,4 +1,4 @@
-"""Ray marching: the transmittance of slabs, what skipping and stopping may change, and its distance to the reference."""
+"""Ray marching: transmittance of slabs, what skipping and stopping may change, distance to the reference."""
 
 from __future__ import annotations
 
@@ -93,7 +93,7 @@ def test_light_falls_on_the_first_matter_of_an_opaque_canopy(ask: Ask) -> None:
 
 
 def test_distance_to_the_reference(judge: Judge) -> None:
-    """What marching itself costs: one-voxel steps and nearest voxels at random offsets instead of 1/3 voxel, trilinear."""
+    """What marching costs: steps of one voxel, and nearest voxels at random offsets for trilinear ones."""
     judge.holds("geometry", "ray_march", budget=0.0)
 
 

@@ -1,4 +1,4 @@
-"""Slices: with their correction they let through what the slab does at any angle; without it, what their number says."""
+"""Slices: corrected, they let through what the slab does at any angle; otherwise, what their number says."""
 
 from __future__ import annotations
 

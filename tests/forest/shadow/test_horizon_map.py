@@ -1,0 +1,99 @@
+"""Single horizon map: its threshold, its two parts, its azimuths, and its distance to the reference."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from renderer.forest.horizon_textures import at_azimuth
+from renderer.forest.shadow.horizon_map import HorizonMap
+from tests.forest import worlds
+from tests.forest.horizons import EPS, threshold, threshold_error, visibility
+from tests.forest.truth import Judge
+
+Ask = Callable[..., np.ndarray]
+FILE = "forest/horizon_threshold.glsl"
+MAP = HorizonMap(softness=EPS)
+
+
+def test_the_threshold_has_its_printed_values(ask: Ask) -> None:
+    assert threshold_error(ask, MAP) < 1e-5
+
+
+@pytest.mark.parametrize(("right", "wrong"), [
+    # As the thesis prints it, t = (phi - Gamma) / (2 eps): errata 000-2.
+    ("smoothstep(gamma - eps, gamma + eps, phi)", "smoothstep(gamma, gamma + 2.0 * eps, phi)"),
+    ("smoothstep(gamma - eps, gamma + eps, phi)", "1.0 - smoothstep(gamma - eps, gamma + eps, phi)"),
+    ("smoothstep(gamma - eps, gamma + eps, phi)", "smoothstep(gamma - eps, gamma + eps, 1.5707963 - phi)"),
+])
+def test_a_wrong_threshold_is_found(ask: Ask, spoil: Callable, right: str, wrong: str) -> None:
+    with spoil(FILE, right, wrong):
+        assert threshold_error(ask, MAP) > 0.1
+
+
+def twin_error(ask: Ask) -> float:
+    """Worst error against the twin, over suns, horizons of both parts, open and wooded places."""
+    worst = 0.0
+    for elevation in (-3.0, 0.5, 4.0, 20.0, 33.0, 80.0):
+        for terrain, canopy, cover in ((0, 0, 1), (5, 18, 1), (35, 30, 1), (5, 18, 0), (35, 30, 0)):
+            found = visibility(ask, MAP, elevation, terrain=terrain, canopy=(70, canopy), cover=cover)
+            gamma = np.radians(max(terrain, canopy * cover))
+            worst = max(worst, float(np.abs(found - threshold(gamma, np.radians(elevation), np.radians(EPS))).max()))
+    return worst
+
+
+def test_the_higher_horizon_counts_and_trees_only_where_they_stand(ask: Ask) -> None:
+    assert twin_error(ask) < 1e-5
+
+
+@pytest.mark.parametrize(("right", "wrong"), [("max(", "min("), ("sun_elevation, ", "shadow_softness, ")])
+def test_a_wrong_choice_of_horizon_is_found(ask: Ask, spoil: Callable, right: str, wrong: str) -> None:
+    with spoil("forest/shadow/horizon_map.glsl", right, wrong):
+        assert twin_error(ask) > 0.1
+
+
+def test_light_only_grows_with_the_sun_and_none_comes_from_below(ask: Ask) -> None:
+    shares = [float(visibility(ask, MAP, e, terrain=2.0)[0]) for e in (-8, -0.1, 0.1, 2, 5, 8.5, 40, 90)]
+    assert shares == sorted(shares)
+    assert shares[0] == shares[1] == 0
+    assert shares[-1] == 1
+
+
+def test_strength_blends_to_no_shadow(ask: Ask) -> None:
+    for strength in (0.0, 0.25, 1.0):
+        made = HorizonMap(softness=EPS, strength=strength)
+        assert visibility(ask, made, 10.0, terrain=50.0)[0] == pytest.approx(1 - strength)
+
+
+RNG = np.random.default_rng(8)
+
+
+@pytest.mark.parametrize("sectors", [4, 8, 32])
+def test_azimuth_is_interpolated_linearly_and_goes_round(sectors: int) -> None:
+    """Twin: numpy's own periodic interpolation, in float64."""
+    maps = RNG.uniform(0, 1, (sectors, 3)).astype(np.float32)
+    axes = 2 * np.pi * np.arange(sectors + 1) / sectors
+    for azimuth in (*RNG.uniform(-7, 13, 40), 0.0, axes[1], axes[-1], axes[-1] - 1e-9):
+        exact = [np.interp(azimuth % (2 * np.pi), axes, np.append(column, column[0])) for column in maps.T]
+        np.testing.assert_allclose(at_azimuth(maps, azimuth), exact, atol=1e-5)
+
+
+def test_the_map_of_the_technique_looks_towards_the_sun() -> None:
+    """A wall in the north hides a northern sun; textures have their first row in the south."""
+    north = np.zeros((4, 3, 2), np.float32)
+    north[0] = [[0.3, 0.3], [0.2, 0.2], [0.1, 0.1]]  # rows from the northern edge on
+    bakes = {"terrain_horizon": {"sectors": north}, "canopy_horizon": {"sectors": np.zeros((2, 4, 2, 2), np.float32)}}
+    for azimuth, share in ((0, 1.0), (45, 0.5), (90, 0.0), (180, 0.0), (315, 0.5)):
+        found = MAP.frame_textures(worlds.state(sun=worlds.sun(azimuth, 20)), bakes)["terrain"]
+        np.testing.assert_allclose(found[:, 0], share * np.array([0.1, 0.2, 0.3]), atol=1e-6)
+
+
+def test_distance_to_the_reference(judge: Judge) -> None:
+    """What it costs: the march, one angle a sector and no gaps, one height for the whole canopy, 4 wide sectors."""
+    judge.holds("shadow", "horizon_map", budget=0.0, against="full")
+
+
+def test_picture(judge: Judge) -> None:
+    judge.looks("shadow", "horizon_map")

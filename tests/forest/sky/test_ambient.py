@@ -1,0 +1,55 @@
+"""Sky light by the pattern's ambient share."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+
+from renderer.forest.sky.ambient import Ambient
+from tests.forest import worlds
+from tests.forest.truth import Judge
+
+Ask = Callable[..., np.ndarray]
+SHARES = np.linspace(0, 1, 9)
+E_SKY = np.array([1.0, 2.0, 4.0])
+"""As the worlds that are asked have it."""
+
+
+def error(ask: Ask) -> float:
+    files = ["forest/sky/ambient.glsl"]
+    found = ask(files, "sky_light(ambient)", {"ambient": SHARES}, 3, techniques={"sky": Ambient()})
+    return float(np.abs(found - SHARES[:, None] * E_SKY).max())
+
+
+def test_the_share_multiplies_the_sky(ask: Ask) -> None:
+    assert error(ask) < 1e-6
+
+
+@pytest.mark.parametrize("wrong", ["sky_irradiance * (1.0 - ambient)", "sky_irradiance.bgr * ambient",
+                                   "sun_irradiance * ambient", "sky_irradiance * ambient * 0.318"])
+def test_a_wrong_sky_is_found(ask: Ask, spoil: Callable, wrong: str) -> None:
+    with spoil("forest/sky/ambient.glsl", "sky_irradiance * ambient", wrong):
+        assert error(ask) > 0.5
+
+
+def test_a_furnace_is_even(paint: Callable[..., Any]) -> None:
+    """Closed form: white matter and white ground under a sky of radiance L, all of it seen, shine with L everywhere."""
+    sky = (0.5, 1.0, 2.0)
+    pattern = worlds.uniform(60, albedo=1.0, ambient=255)
+    baked = worlds.together(sky={**worlds.sky(sky), "sun_irradiance": np.zeros((2, 3))}, terrain=worlds.ground(),
+                            pattern=pattern)
+    made = worlds.state(camera=worlds.map_view(0, 0, 40), ground={"albedo": [1, 1, 1]}, **worlds.PLAIN)
+    seen = paint(made, baked, (16, 16), 4).linear
+    np.testing.assert_allclose(seen[..., :3], np.broadcast_to(sky, (16, 16, 3)), rtol=2e-3)
+
+
+def test_distance_to_the_reference(judge: Judge) -> None:
+    """What it costs: the march; the share is the reference's own, of the nearest voxel."""
+    judge.holds("sky", "ambient", budget=0.0)
+
+
+def test_picture(judge: Judge) -> None:
+    judge.looks("sky", "ambient")
