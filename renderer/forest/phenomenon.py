@@ -82,7 +82,11 @@ PRESETS = {
     "forest_edge": Preset(
         "Forest edge",
         "A glade close by, in morning light.",
-        {"camera": _orbit((1150, -300, 240), 90, 200, 8), "sun": _sun(110, 34), "view": {"exposure": -7.0}},
+        {
+            "camera": {"kind": "look", "eye": [964, 306, 81.5], "target": [975, 420, 84], "field_of_view": 50},
+            "sun": _sun(160, 38),
+            "view": {"exposure": -7.0},
+        },
     ),
 }
 

@@ -116,7 +116,7 @@ class Canopy(Model):
 class Ground(Model):
     """What shows between the trees."""
 
-    albedo: Colour = param((0.16, 0.15, 0.07), label="Ground albedo", help="Reflectance of the soil and the grass.")
+    albedo: Colour = param((0.10, 0.10, 0.045), label="Ground albedo", help="Reflectance of the soil and the grass.")
     tint_strength: float = param(
         0.35, label="Tree tint", help="How much one tree's colour differs from the next.", unit="ratio", ge=0, le=0.9
     )

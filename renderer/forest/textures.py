@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from scipy.ndimage import distance_transform_edt
 
 from renderer.core.technique import Arrays
 from renderer.forest.tiles import cell_hash, tile_table
@@ -12,8 +13,8 @@ from renderer.gl.program import AnyTexture
 from renderer.gl.textures import Wrap
 from renderer.world.terrain import normals
 
-COVER_FINER = 4
-"""How many times finer the yes-or-no map of trees is than the terrain grid: 2 m, less than a crown."""
+COVER_FINER = 2
+"""How many times finer the yes-or-no map of trees is than the terrain grid: 4 m, less than a crown."""
 
 TILE_MAP = 512
 """Cells a side of the patch of tiles that is kept: 20 km, beyond what is drawn."""
@@ -31,14 +32,19 @@ def bilinear_cells(elevation: np.ndarray) -> np.ndarray:
 
 
 def fine_cover(cover: np.ndarray) -> np.ndarray:
-    """Where trees may stand, 0 or 255, `COVER_FINER` times finer than the grid: bilinear cover above one half."""
+    """Where trees may stand (0 or 255) and how far the next such place is [m], (.., .., 2) uint8, row 0 at the south.
+
+    `COVER_FINER` times finer than the grid; trees stand where bilinear cover exceeds one half.
+    """
     nodes = cover.shape[0]
     place = (np.arange(nodes * COVER_FINER) + 0.5) / COVER_FINER - 0.5
     low = np.clip(np.floor(place).astype(int), 0, nodes - 2)
     weight = np.clip(place - low, 0, 1).astype(np.float32)
     rows = cover[low] * (1 - weight)[:, None] + cover[low + 1] * weight[:, None]
     both = rows[:, low] * (1 - weight) + rows[:, low + 1] * weight
-    return np.where(both[::-1] > 0.5, np.uint8(255), np.uint8(0))
+    wooded = both[::-1] > 0.5
+    away = distance_transform_edt(~wooded) * (CELL / COVER_FINER) if wooded.any() else np.full(wooded.shape, 255.0)
+    return np.stack([wooded * np.uint8(255), np.minimum(away, 255)], axis=-1).astype(np.uint8)
 
 
 def ground_textures(gl: GL, ground: Arrays) -> dict[str, AnyTexture]:

@@ -1,8 +1,16 @@
 // The soft threshold that every horizon technique shares. Cohen 2004, section 3.1, corrected by errata 000-2.
 // Symbols: gamma horizon elevation [rad], phi elevation of the sun [rad], eps half width of the penumbra [rad].
 
+// Distance [m] to the neighbouring tree, whose shadow the tile's horizon holds.
+const float NEIGHBOUR = 8.0;
+
 // C = t^2 (3 - 2 t), t = clamp((phi - Gamma + eps) / (2 eps), 0, 1); the printed t lacks "+ eps" (errata 000-2).
 // A sun below the horizontal plane lights nothing (errata 000-10).
 float horizon_lit(float gamma, float phi, float eps) {
     return smoothstep(gamma - eps, gamma + eps, phi) * step(0.0, phi);
+}
+
+// Whether the stand goes on towards the sun: a tile's horizon, which knows neither glades nor edges, counts only there.
+float stand_towards_sun(vec2 xy) {
+    return covered(xy) * covered(xy + NEIGHBOUR * normalize(sun_direction.xy + 1e-6));
 }

@@ -21,9 +21,13 @@ vec3 ground_normal(vec2 xy) {
     return normalize(textureLod(normals, terrain_coordinate(xy), 0.0).xyz);
 }
 
-// Where trees may stand, 0 or 1.
+// Where trees may stand, 0 or 1, and how far off the next such place is [m].
+vec2 cover_at(vec2 xy) {
+    return textureLod(cover, terrain_coordinate(xy), 0.0).rg * vec2(1.0, 255.0);
+}
+
 float covered(vec2 xy) {
-    return textureLod(cover, terrain_coordinate(xy), 0.0).r;
+    return cover_at(xy).x;
 }
 
 // Formulas b1: a triangle's tile follows from the hashed colours of its three edges. `tiles` holds the outcome for the cells in reach,

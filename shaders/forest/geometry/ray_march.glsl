@@ -4,6 +4,9 @@
 // Deviations: the step grows with the mip level; light is evaluated at a few levels of opacity (events.glsl), not at every step;
 // each ray reads nearest voxels at its own offset, whose mean over rays is trilinear interpolation.
 
+// A voxel's foot and another's are both within 8 m along each axis: nothing stands nearer than the next stand less that, and a texel.
+const float GLADE_REACH = 28.0;
+
 // Formulas g: front to back, T *= 1 - alpha'; alpha' = 1 - (1 - alpha)^step, a step being that share of a voxel.
 void geometry_trace(vec3 origin, vec3 direction, float t, float jitter, vec3 shift, inout Events events) {
     float ds = geometry_step * voxel_size * exp2(events.level);
@@ -20,7 +23,8 @@ void geometry_trace(vec3 origin, vec3 direction, float t, float jitter, vec3 shi
         vec4 voxel = voxel_at(atlas_coordinate(p.xy) + shift.xy, h + shift.z, events.level);
         bool gone = t > scene_reach || (over && direction.z >= 0.0 && p.z > scene_top);
         found = above <= 0.0 ? 2 : gone ? 0 : 1;
-        float alpha = found == 1 && !over ? (1.0 - pow(1.0 - opacity_of(voxel), geometry_step)) * covered(foot_of(p.xy, voxel)) : 0.0;
+        vec2 stand = cover_at(foot_of(p.xy, voxel));
+        float alpha = found == 1 && !over ? (1.0 - pow(1.0 - opacity_of(voxel), geometry_step)) * stand.x : 0.0;
         float opacity = 1.0 - (1.0 - events.opacity) * (1.0 - alpha);
         if (opacity > 1.0 - geometry_stop) {
             opacity = 1.0;
@@ -29,7 +33,8 @@ void geometry_trace(vec3 origin, vec3 direction, float t, float jitter, vec3 shi
         add_event(events, vec4(p, h), voxel, opacity);
         if (found == 1) {
             previous = t;
-            t += over ? max(step_above(gap, direction), 0.5 * ds) : max(ds, (free_voxels(voxel) - 0.5) / rate);
+            float skip = max((free_voxels(voxel) - 1.0) / rate, stand.y - GLADE_REACH);
+            t += over ? max(step_above(gap, direction), 0.5 * ds) : max(ds, skip);
         }
     }
     if (found == 2) {

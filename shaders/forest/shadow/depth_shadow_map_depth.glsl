@@ -28,7 +28,7 @@ vec4 shadow_depth_texel(vec2 pixel) {
         float h = above / canopy_height;
         vec4 voxel = voxel_at(atlas_coordinate(p.xy), h, 0.0);
         if (opacity_of(voxel) * covered(foot_of(p.xy, voxel)) >= shadow_threshold) return vec4(t);
-        t += max((free_voxels(voxel) - 0.5) / rate, 0.5 * voxel_size);
+        t += max((free_voxels(voxel) - 1.0) / rate, 0.5 * voxel_size);
     }
     return vec4(1e9);
 }
