@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -200,21 +200,28 @@ def _styles(points: Sequence[Point], slot: str, palette: Sequence[str]) -> dict[
     return {kind: palette[n % len(palette)] for n, kind in enumerate(kinds)}
 
 
-def write(results: Path, folder: Path, title: str, colour_by: str, marker_by: str = "") -> list[Point]:
+def write(
+    results: Path,
+    folder: Path,
+    title: str,
+    colour_by: str,
+    marker_by: str = "",
+    keep: Callable[[Mapping[str, Any]], bool] | None = None,
+) -> list[Point]:
     """Redraw the table and the chart of a sweep from its raw results.
 
     Args:
-        results: the JSON lines.
+        results: the JSON lines; `keep` chooses among them.
         folder: gets `table.md`, and `speed_accuracy` as `.png`, `.svg` and `.csv`.
         title, colour_by, marker_by: as `speed_accuracy`.
 
     Raises:
         InputError: as `summarise`.
     """
-    lines = read(results)
+    lines = [line for line in read(results) if keep is None or keep(line)]
     points = summarise(lines)
     folder.mkdir(parents=True, exist_ok=True)
-    (folder / "table.md").write_text(table(points), encoding="utf-8")
+    (folder / "table.md").write_text(f"{title}\n\n{table(points)}", encoding="utf-8")
     (folder / "speed_accuracy.csv").write_text(as_csv(points), encoding="utf-8")
     costs = [(line["reference_seconds"] * 1e3, line["reference_standard_error"]) for line in lines
              if line.get("reference_seconds") and line.get("reference_standard_error")]

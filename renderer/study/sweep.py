@@ -120,7 +120,7 @@ def read(path: Path) -> list[dict[str, Any]]:
     return found
 
 
-def _append(path: Path, line: Mapping[str, Any]) -> None:
+def append(path: Path, line: Mapping[str, Any]) -> None:
     """Add one line and see it to the disk; a torn end of an earlier writer is cut off first."""
     path.parent.mkdir(parents=True, exist_ok=True)
     with path.open("ab+") as file:
@@ -200,7 +200,7 @@ def sweep(
             except UmbrageError as failure:
                 line["failed"] = str(failure)
             line["took_seconds"] = time.perf_counter() - begun
-            _append(results, line)
+            append(results, line)
             known[key] = line
         found.append(known[key])
     if progress is not None:
@@ -251,6 +251,6 @@ def clock(
                 "frames": frames,
                 "frame_ms": float(median), "frame_ms_p95": float(p95), "yardstick_ms": unit,
                 "yardsticks": float(median) / unit if unit else None}
-        _append(results, line)
+        append(results, line)
         found.append(line)
     return found

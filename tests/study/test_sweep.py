@@ -139,15 +139,18 @@ def test_summary_table_and_chart_files(tmp_path: Path) -> None:
     assert [p.worst for p in points] == pytest.approx([0.2, 0.4, 0.8])
     assert [p.on_front for p in points] == [True, False, True], "middling is slower and worse than good"
     text = (tmp_path / "out" / "table.md").read_text().splitlines()
-    assert len(text) == 5
-    assert "**good**" in text[2]
-    assert "| middling |" in text[3]
+    assert text[:2] == ["Made up, llvmpipe", ""]
+    assert len(text) == 7
+    assert "**good**" in text[4]
+    assert "| middling |" in text[5]
     csv = (tmp_path / "out" / "speed_accuracy.csv").read_text().splitlines()
     assert csv[0].startswith("light,shadow,error,worst")
     assert float(csv[1].split(",")[2]) == pytest.approx(0.15)
     assert (tmp_path / "out" / "speed_accuracy.png").read_bytes()[:4] == b"\x89PNG"
     svg = (tmp_path / "out" / "speed_accuracy.svg").read_text()
     assert "</svg>" in svg
+    eastern = write(path, tmp_path / "east", "East", "shadow", keep=lambda line: line["sun"] == "east")
+    assert [p.error for p in eastern] == pytest.approx([0.1, 0.2, 0.4])
     write(path, tmp_path / "again", "Made up, llvmpipe", "shadow", "light")
     assert (tmp_path / "again" / "table.md").read_text() == (tmp_path / "out" / "table.md").read_text()
 
