@@ -8,7 +8,7 @@ import os
 import shutil
 import threading
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -62,6 +62,15 @@ def encoding(rgb8: np.ndarray) -> list[dict[str, Any]]:
             }
         )
     return found
+
+
+def small_jpeg(rgb8: np.ndarray, limit: int) -> bytes:
+    """A picture as a JPEG of at most `limit` bytes, at quality 85 where that is small enough."""
+    for quality in range(85, 20, -5):
+        data = encode(rgb8, "jpeg", quality)[0]
+        if len(data) <= limit:
+            break
+    return data
 
 
 @contextlib.contextmanager
@@ -244,8 +253,3 @@ def _wait(condition: Any, what: str) -> None:
         if time.monotonic() > end:
             raise TimeoutError(f"waited {PATIENCE_S:.0f} s for {what}")
         time.sleep(0.01)
-
-
-def spread(values: Sequence[float]) -> str:
-    """A list of numbers as its least and greatest."""
-    return f"{min(values):.3g} to {max(values):.3g}"

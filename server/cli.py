@@ -7,7 +7,7 @@ import sys
 from collections.abc import Sequence
 
 from renderer.core.errors import InputError, InvalidDocument, UmbrageError
-from server import cli_draw, cli_measure, cli_serve
+from server import cli_draw, cli_measure, cli_serve, cli_study
 
 FAILED, REFUSED, INTERRUPTED = 1, 2, 130
 """Exit codes: something of ours or of the machine, something that was asked wrongly, Ctrl-C."""
@@ -22,6 +22,7 @@ def parser(arguments: Sequence[str]) -> argparse.ArgumentParser:
     cli_serve.add(commands)
     cli_draw.add(commands)
     cli_measure.add(commands, "measure" in arguments)
+    cli_study.add(commands)
     return top
 
 

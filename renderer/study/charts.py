@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from renderer.core.errors import InputError
 from renderer.study.sweep import read
@@ -189,6 +190,11 @@ def speed_accuracy(
         axes.plot(
             *reference, "*", color="black", markersize=12, linestyle="none", label="reference: its cost, its own error"
         )
+    for axis in (axes.xaxis, axes.yaxis):
+        # plain numbers at 1, 2, 5, 10: matplotlib's own crowd each other where an axis spans less than two decades
+        axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+        axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+        axis.set_minor_formatter(NullFormatter())
     axes.grid(True, which="both", alpha=0.2)
     axes.legend(fontsize="small", loc="center left", bbox_to_anchor=(1.0, 0.5))
     return figure

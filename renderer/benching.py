@@ -1,0 +1,166 @@
+"""What a frame costs: every technique and preset, timed in turns, in milliseconds and in yardsticks."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from renderer.core.params import merge
+from renderer.core.registry import phenomenon, techniques
+from renderer.study.sweep import FRAMES, Case, clock, provenance
+from renderer.study.yardstick import Yardstick
+from renderer.world.state import SceneState
+from renderer.world.sun import SunDirection, angles
+
+if TYPE_CHECKING:
+    from renderer.session import Session
+
+__all__ = ["FRAMES", "provenance", "time_frames"]
+
+Progress = Callable[[float, str], None]
+
+SIZES = ((512, 512), (1280, 720))
+"""Width and height of the timed pictures."""
+
+STEP_DEGREES = 0.25
+"""How far the sun or the camera turns from one timed frame to the next, where it moves."""
+
+MOVES = ("nothing", "sun", "camera")
+"""What moves between two frames: what a frame keeps from the last one depends on it."""
+
+
+class Stopwatch:
+    """Draws single interactive frames and tells what each took, from an empty canvas to the displayed pixels in memory.
+
+    Args:
+        session: draws.
+        scene: its name.
+        size: width and height, pixels.
+    """
+
+    def __init__(self, session: Session, scene: str, size: tuple[int, int]) -> None:
+        self._session = session
+        self._scene = scene
+        self._size = size
+        self._view = session.view()
+        self._drawn: dict[str, int] = {}
+
+    def frame_ms(self, case: Case) -> float:
+        """Milliseconds of the next frame of a case; what moves in it (`moves`) has moved on by a step."""
+        name = repr(case)
+        turn = self._drawn[name] = self._drawn.get(name, -1) + 1
+        state = moved(state_of(self._session, self._scene, case), str(case.parameters.get("moves", MOVES[0])), turn)
+        if not self._session.prepared(state):
+            self._session.prepare(state).future.result()
+        return float(self._view.frame(state, *self._size).result().render_ms)
+
+    def close(self) -> None:
+        """Free the canvas."""
+        self._view.close()
+
+
+def state_of(session: Session, scene: str, case: Case) -> SceneState:
+    """The state that a case means: its preset with its techniques, under the sun and exposure that it sets."""
+    sets: dict[str, Any] = {f"{slot}.kind": kind for slot, kind in case.techniques.items()}
+    # one sample a frame; a frame of the same state as the last one still draws a sample, and adds it
+    sets["quality"] = {"kind": "samples", "n": 4096}
+    for name, path in (("sun", "sun"), ("exposure", "view.exposure")):
+        if name in case.parameters:
+            sets[path] = case.parameters[name]
+    return session.state(scene, case.preset, sets)
+
+
+def moved(state: SceneState, what: str, turn: int) -> SceneState:
+    """A state whose sun or camera has turned by some steps about the vertical."""
+    if what == "nothing":
+        return state
+    part: Any = state.camera
+    if what == "sun":
+        azimuth, elevation = angles(state.sun)
+        part = SunDirection(azimuth=math.degrees(azimuth), elevation=math.degrees(elevation))
+    turned = part.model_copy(update={"azimuth": (part.azimuth + turn * STEP_DEGREES) % 360.0})
+    return state.model_copy(update={what: turned})
+
+
+def variants(scene: str) -> list[dict[str, str]]:
+    """The default techniques, and those with one slot filled otherwise, the default first."""
+    slots = phenomenon(scene).slots
+    default = {slot.name: slot.default for slot in slots}
+    others = [
+        {**default, slot.name: kind}
+        for slot in slots
+        for kind in techniques(scene, slot.name)
+        if kind != slot.default
+    ]
+    return [default, *others]
+
+
+def time_frames(
+    session: Session,
+    scene: str,
+    results: Path,
+    machine: Mapping[str, Any],
+    frames: int = FRAMES,
+    presets: tuple[str, ...] = (),
+    progress: Progress | None = None,
+) -> list[dict[str, Any]]:
+    """Time every technique at every preset, and every shadow technique while the sun and the camera move.
+
+    Techniques are timed in turns within a preset: ratios between them come from one run.
+
+    Args:
+        session: draws.
+        scene: its name.
+        results: JSON lines to add to.
+        machine: where it runs.
+        frames: timed frames of each.
+        presets: all where none is named.
+        progress: told the share done.
+    """
+    names = presets or tuple(phenomenon(scene).presets)
+    stick = session.gl.call(Yardstick)
+    groups = list(_groups(scene, names))
+    found = []
+    for number, cases in enumerate(groups):
+        for column, size in enumerate(SIZES):
+            watch = Stopwatch(session, scene, size)
+            done = number + column / len(SIZES)
+
+            def tell(share: float, words: str, done: float = done) -> None:
+                if progress is not None:
+                    progress((done + share / len(SIZES)) / len(groups), words)
+
+            try:
+                found += clock(
+                    results, cases, watch.frame_ms, size, machine, lambda: session.gl.call(stick.draw_ms), frames, tell
+                )
+            finally:
+                watch.close()
+    return found
+
+
+def _groups(scene: str, presets: tuple[str, ...]) -> Iterator[list[Case]]:
+    """Cases that are timed in turns."""
+    for preset in presets:
+        yield [Case(preset, "preset", chosen, {"moves": MOVES[0]}) for chosen in variants(scene)]
+    default = variants(scene)[0]
+    for what in MOVES[1:]:
+        yield [
+            Case(presets[0], "preset", {**default, "shadow": kind}, {"moves": what})
+            for kind in techniques(scene, "shadow")
+        ]
+
+
+SUNS: Mapping[str, dict[str, Any]] = {
+    "morning": {"sun": {"kind": "direction", "azimuth": 105.0, "elevation": 30.0}, "view": {"exposure": -7.0}},
+    "noon": {"sun": {"kind": "direction", "azimuth": 185.0, "elevation": 62.0}, "view": {"exposure": -7.6}},
+    "evening": {"sun": {"kind": "direction", "azimuth": 275.0, "elevation": 9.0}, "view": {"exposure": -5.8}},
+}
+"""Three suns under which every preset is pictured, and the exposure for each."""
+
+
+def pictured(session: Session, scene: str, preset: str, sun: str) -> SceneState:
+    """The state of a preset's picture under one of `SUNS`."""
+    return session.state(scene, preset, None, merge({"quality": {"kind": "samples", "n": 32}}, SUNS[sun]))

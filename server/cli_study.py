@@ -1,0 +1,197 @@
+"""Commands that measure the techniques: study, bench."""
+
+from __future__ import annotations
+
+import argparse
+import shutil
+import time
+from pathlib import Path
+from typing import Any
+
+from renderer.core.channel import Progress
+from renderer.core.errors import InputError
+from renderer.session import Session
+from server.cli_progress import Bar
+from server.settings import ROOT, load
+
+DOCS = ROOT / "docs"
+OUT = ROOT / "out" / "bench"
+KEPT = ("table.md", "speed_accuracy.svg", "speed_accuracy.png")
+"""Files of a study that the documentation keeps."""
+
+FRAMES = 30
+"""Timed frames of each technique, from which medians and 95th percentiles are stated."""
+
+PARTS = ("frames", "encode", "browser", "sessions", "pictures")
+PICTURE = (640, 360)
+"""Width and height of the documentation's pictures."""
+
+PICTURE_BYTES = 60_000
+"""Largest file of one."""
+
+
+def add(commands: Any) -> None:
+    """Declare the commands."""
+    command = commands.add_parser("study", help="error of every combination of techniques against the reference")
+    command.add_argument("scene", metavar="SCENE")
+    command.add_argument("--presets", metavar="NAME,..", default="", help="all, or names (default: the scene's first)")
+    command.add_argument("--suns", metavar="NAME,..", default="all", help="names, or how many (default: %(default)s)")
+    command.add_argument("--slots", metavar="NAME,..", default="", help="(default: shadow, light and geometry)")
+    command.add_argument("--size", type=int, default=128, help="side of the pictures, px (default %(default)s)")
+    command.add_argument("--frames", type=int, default=FRAMES, help="timed frames of each; 0 for no times")
+    command.add_argument("--docs", action="store_true", help="copy tables and charts into docs/study")
+    command.set_defaults(run=study)
+    command = commands.add_parser("bench", help="frame times, encoding, latency in a browser, and pictures for docs")
+    command.add_argument("scene", metavar="SCENE", nargs="?", default="forest")
+    command.add_argument("--frames", type=int, default=FRAMES, help="timed frames of each (default %(default)s)")
+    command.add_argument("--presets", metavar="NAME,..", default="all", help="all, or names (default %(default)s)")
+    command.add_argument("--parts", metavar="NAME,..", default="all", help=f"of {', '.join(PARTS)} (default: all)")
+    command.set_defaults(run=bench)
+
+
+class _Teller:
+    """A bar fed with a share and words."""
+
+    def __init__(self, name: str) -> None:
+        self.bar = Bar()
+        self._name = name
+        self._start = time.monotonic()
+        self._at = 0.0
+        self._words = ""
+
+    def __call__(self, share: float, words: str) -> None:
+        """Show the share of the whole."""
+        self._at, self._words = share, words
+        self._show(words)
+
+    def inner(self, share: float, words: str) -> None:
+        """Show how far one step of the whole is."""
+        self._show(f"{self._words}: {words} {share:.0%}")
+
+    def _show(self, words: str) -> None:
+        spent = time.monotonic() - self._start
+        left = spent / self._at * (1 - self._at) if self._at > 0.02 else 0.0
+        self.bar(Progress(self._name, self._at, words, left))
+
+
+def names_of(option: str, text: str, every: tuple[str, ...]) -> tuple[str, ...]:
+    """Names separated by commas; `all`, or how many of the first.
+
+    Raises:
+        InputError: a number that is none, or a name that there is not.
+    """
+    if text == "all":
+        return every
+    if text.isdigit() and 1 <= int(text) <= len(every):
+        return every[: int(text)]
+    names = tuple(filter(None, text.split(",")))
+    for name in names:
+        if name not in every:
+            raise InputError(option, f"{name} is not known", f"all, 1 to {len(every)}, or of {', '.join(every)}")
+    return names
+
+
+def study(given: argparse.Namespace) -> int:
+    """Run a study and write its raw results, tables and charts."""
+    from renderer import studying  # charts take a second to import, which no other command should pay
+
+    if given.frames < 0:
+        raise InputError("--frames", "cannot be negative", f"0 for no times, {FRAMES} for stated ones")
+    with Session() as session:
+        scene = session.describe(given.scene)
+        plan = studying.Plan(
+            given.scene,
+            names_of("--presets", given.presets, tuple(scene["presets"])),
+            names_of("--suns", given.suns, tuple(studying.SUNS)),
+            names_of("--slots", given.slots, tuple(slot["name"] for slot in scene["slots"])) or studying.SLOTS,
+            given.size,
+        ).checked()
+        folder = Path(load().study) / given.scene
+        tell = _Teller(given.scene)
+        try:
+            studying.run(session, plan, folder, given.frames, tell, tell.inner)
+        finally:
+            tell.bar.close()
+    if given.docs:
+        _keep(folder, DOCS / "study" / given.scene)
+    print(f"{folder}: results.jsonl, table.md, speed_accuracy.svg .png .csv; in shadow/ those of the shadows alone")
+    return 0
+
+
+def _keep(folder: Path, docs: Path) -> None:
+    """Copy what is small into the documentation."""
+    for part in ("", "shadow"):
+        (docs / part).mkdir(parents=True, exist_ok=True)
+        for name in KEPT:
+            shutil.copyfile(folder / part / name, docs / part / name)
+
+
+def bench(given: argparse.Namespace) -> int:
+    """Time everything, in one run on this machine, and write JSON lines, a table and the documentation's pictures."""
+    from renderer import benching
+    from server import bench_report
+
+    parts = names_of("--parts", given.parts, PARTS)
+    if given.frames < 1:
+        raise InputError("--frames", "must be at least one", f"{FRAMES} for stated medians and percentiles")
+    found: dict[str, Any] = {}
+    with Session() as session:
+        presets = names_of("--presets", given.presets, tuple(session.describe(given.scene)["presets"]))
+        machine = benching.provenance(session.gl.info.renderer)
+        tell = _Teller(given.scene)
+        try:
+            first = session.state(given.scene, presets[0])
+            session.prepare(first, tell.bar).future.result()
+            if "frames" in parts:
+                OUT.mkdir(parents=True, exist_ok=True)
+                results = OUT / "frames.jsonl"
+                results.unlink(missing_ok=True)
+                found["frames"] = benching.time_frames(
+                    session, given.scene, results, machine, given.frames, presets, tell
+                )
+            found |= _doors(session, first, parts, tell)
+            if "pictures" in parts:
+                found["pictures"] = _pictures(session, given.scene, presets, tell)
+        finally:
+            tell.bar.close()
+    bench_report.save(OUT, machine, found)
+    print((OUT / "table.md").read_text(encoding="utf-8"), end="")
+    return 0
+
+
+def _doors(session: Session, first: Any, parts: tuple[str, ...], tell: _Teller) -> dict[str, Any]:
+    """Encoding, the browser and several sessions, as far as they are wanted."""
+    from renderer.benching import SIZES
+    from server import bench as doors
+
+    found: dict[str, Any] = {}
+    if "encode" in parts:
+        pictures = [session.draw(first, width, height, 1).rgb8 for width, height in SIZES]
+        found["encode"] = [line for rgb8 in pictures for line in doors.encoding(rgb8)]
+    if "browser" in parts or "sessions" in parts:
+        with doors.serving(session) as address:
+            if "browser" in parts:
+                tell(0.5, "dragging in a browser")
+                found["browser"] = doors.browser(address)
+            if "sessions" in parts:
+                tell(0.8, "four sessions at once")
+                found["sessions"] = doors.several(address, first.model_dump(mode="json"))
+    return found
+
+
+def _pictures(session: Session, scene: str, presets: tuple[str, ...], tell: _Teller) -> list[str]:
+    """Small pictures of each preset at three suns, into the documentation."""
+    from renderer import benching
+    from server.bench import small_jpeg
+
+    folder = DOCS / "pictures"
+    folder.mkdir(parents=True, exist_ok=True)
+    wanted = [(preset, sun) for preset in presets for sun in benching.SUNS]
+    written = []
+    for number, (preset, sun) in enumerate(wanted):
+        tell(number / len(wanted), f"picture of {preset}, {sun}")
+        picture = session.render(benching.pictured(session, scene, preset, sun), *PICTURE)
+        path = folder / f"{scene}_{preset}_{sun}.jpg"
+        path.write_bytes(small_jpeg(picture.rgb8, PICTURE_BYTES))
+        written.append(path.name)
+    return written
