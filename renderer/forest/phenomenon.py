@@ -15,7 +15,7 @@ SLOTS = (
         "geometry",
         "Geometry",
         "How the canopy is sampled along a ray.",
-        "void geometry_trace(vec3 origin, vec3 direction, float t, float jitter, vec3 shift, inout Events events) // m",
+        "void geometry_trace(vec3 origin, vec3 direction, float t, vec4 jitter, inout Events events) // m",
         DEFAULTS["geometry"],
     ),
     Slot(
@@ -72,12 +72,12 @@ PRESETS = {
     "low_sun": Preset(
         "Low sun",
         "Late afternoon: long shadows from tree to tree.",
-        {"camera": _orbit((1150, -300, 260), 700, 205, 20), "sun": _sun(255, 18), "view": {"exposure": -6.6}},
+        {"camera": _orbit((1150, -300, 265), 650, 305, 15), "sun": _sun(255, 18), "view": {"exposure": -6.6}},
     ),
     "valley_sunset": Preset(
         "Valley at sunset",
         "The ridge has taken the sun from the valley floor.",
-        {"camera": _orbit((1450, -500, 300), 2200, 235, 13), "sun": _sun(292, 7), "view": {"exposure": -5.6}},
+        {"camera": _orbit((1600, -900, 400), 1500, 268, 5), "sun": _sun(292, 9), "view": {"exposure": -5.2}},
     ),
     "forest_edge": Preset(
         "Forest edge",

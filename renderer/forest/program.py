@@ -23,7 +23,7 @@ ENTRY_STEPS = 128
 SCOUT_BLOCK = 8
 """Pixels a side of the blocks whose way to the canopy is found once for all their rays."""
 
-MARCH_STEPS = 512
+MARCH_STEPS = 1024
 """Steps a ray may take inside the canopy layer."""
 
 LIGHT_EVENTS = 2
@@ -42,6 +42,7 @@ uniform float terrain_steepness;  // greatest rise over run
 uniform float tile_side;          // m
 uniform float voxel_size;         // m
 uniform float canopy_height;      // m
+uniform float canopy_top;         // m, no tree is taller
 uniform float scene_top;          // m, nothing stands higher
 uniform float scene_reach;        // m, nothing farther is drawn
 uniform vec3 sun_direction;

@@ -35,7 +35,7 @@ class ForestRenderer:
         self._gl = gl
         self._baked = Resident(gl, 6)
         self._moment = Resident(gl, 24)
-        self._steepness: dict[str, tuple[float, float]] = {}
+        self._bounds: dict[tuple[str, str], tuple[float, float, float]] = {}
 
     def draw(
         self, state: ForestState, baked: Baked, size: tuple[int, int], offset: tuple[float, float], sample: int
@@ -81,10 +81,10 @@ class ForestRenderer:
         return held  # type: ignore[return-value]
 
     def _world(self, state: ForestState, baked: Baked) -> dict[str, Any]:
-        ground = baked["terrain"]
-        if ground.key not in self._steepness:
-            self._steepness[ground.key] = relief(ground.arrays["elevation"])
-        steepness, top = self._steepness[ground.key]
+        ground, pattern = baked["terrain"], baked["pattern"]
+        if (ground.key, pattern.key) not in self._bounds:
+            self._bounds[ground.key, pattern.key] = (*relief(ground.arrays["elevation"]), tallest(pattern.arrays["colour"]))
+        steepness, summit, tree = self._bounds[ground.key, pattern.key]
         now = sky_for(baked["sky"].arrays, angles(state.sun)[1])
         sun = direction(state.sun)
         return {
@@ -94,7 +94,8 @@ class ForestRenderer:
             "tile_side": TILE_SIDE,
             "voxel_size": VOXEL,
             "canopy_height": CANOPY_HEIGHT,
-            "scene_top": top + CANOPY_HEIGHT,
+            "canopy_top": tree,
+            "scene_top": summit + tree,
             "scene_reach": REACH,
             "sun_direction": sun,
             "sun_elevation": angles(state.sun)[1],
@@ -211,3 +212,9 @@ def relief(elevation: np.ndarray) -> tuple[float, float]:
     north = np.abs(np.diff(elevation, axis=0)) / CELL
     steepest = np.hypot(np.maximum(east[:-1], east[1:]), np.maximum(north[:, :-1], north[:, 1:])).max()
     return float(steepest), float(elevation.max())
+
+
+def tallest(colour: np.ndarray) -> float:
+    """Height [m] over the ground that no matter of the pattern passes, with half a voxel for its filtering."""
+    filled = np.flatnonzero(colour[..., 3].any(axis=(1, 2)))
+    return float(min((filled[-1] + 1.5) / len(colour), 1.0)) * CANOPY_HEIGHT if len(filled) else VOXEL

@@ -17,7 +17,7 @@ float canopy_entry(vec3 origin, vec3 direction, float t) {
     float found = t < 0.0 ? -1.0 : 0.0;
     for (int i = 0; i < ENTRY_STEPS && found == 0.0; i++) {
         vec3 p = origin + t * direction;
-        float gap = p.z - ground_height(p.xy) - canopy_height;
+        float gap = p.z - ground_height(p.xy) - canopy_top;
         bool past = t > scene_reach || (p.z > scene_top && direction.z >= 0.0);
         found = past ? -1.0 : gap <= 0.1 ? 1.0 : 0.0;
         t += found == 0.0 ? max(step_above(gap, direction), 0.1) : 0.0;

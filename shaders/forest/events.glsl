@@ -10,18 +10,16 @@ struct Events {
     vec4 place[LIGHT_EVENTS];
     vec4 voxel[LIGHT_EVENTS];
     float opacity;
-    float level;
     float xi;
 };
 
-Events no_events(float level, float xi) {
+Events no_events(float xi) {
     Events events;
     for (int k = 0; k < LIGHT_EVENTS; k++) {
         events.place[k] = vec4(0.0, 0.0, 0.0, NOTHING);
         events.voxel[k] = vec4(0.0);
     }
     events.opacity = 0.0;
-    events.level = level;
     events.xi = xi;
     return events;
 }
@@ -35,4 +33,11 @@ void add_event(inout Events events, vec4 place, vec4 voxel, float opacity) {
         events.voxel[k] = passed ? voxel : events.voxel[k];
     }
     events.opacity = opacity;
+}
+
+float filter_level(float footprint);
+
+// Whole mip level for a point at distance t [m]: rounded at random, so that levels blend over rays without a second fetch.
+float level_at(float t, float random) {
+    return floor(filter_level(max(t, 0.0) * pixel_angle + pixel_width) + random);
 }

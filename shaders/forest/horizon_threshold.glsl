@@ -4,6 +4,9 @@
 // Distance [m] to the neighbouring tree, whose shadow the tile's horizon holds.
 const float NEIGHBOUR = 8.0;
 
+// Half penumbra [rad] of the land's shadow at most: the sun's radius and half a cell of the map seen from a hundred metres.
+const float LAND_SOFTNESS = 0.045;
+
 // C = t^2 (3 - 2 t), t = clamp((phi - Gamma + eps) / (2 eps), 0, 1); the printed t lacks "+ eps" (errata 000-2).
 // A sun below the horizontal plane lights nothing (errata 000-10).
 float horizon_lit(float gamma, float phi, float eps) {
@@ -13,4 +16,10 @@ float horizon_lit(float gamma, float phi, float eps) {
 // Whether the stand goes on towards the sun: a tile's horizon, which knows neither glades nor edges, counts only there.
 float stand_towards_sun(vec2 xy) {
     return covered(xy) * covered(xy + NEIGHBOUR * normalize(sun_direction.xy + 1e-6));
+}
+
+// Sun over the land's horizon and over the canopy's: the land hides it wholly, the canopy by its strength, for leaves let light through.
+float horizon_visibility(float land, float canopy) {
+    float over_land = horizon_lit(land, sun_elevation, min(shadow_softness, LAND_SOFTNESS));
+    return over_land * mix(1.0, horizon_lit(canopy, sun_elevation, shadow_softness), shadow_strength);
 }

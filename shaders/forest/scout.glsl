@@ -15,7 +15,7 @@ float scout_distance(vec2 block) {
     float t = 0.0;
     for (int i = 0; i < ENTRY_STEPS; i++) {
         vec3 p = origin + t * direction;
-        float gap = p.z - ground_height(p.xy) - canopy_height - (terrain_steepness + 1.0) * (r0 + k * t);
+        float gap = p.z - ground_height(p.xy) - canopy_top - (terrain_steepness + 1.0) * (r0 + k * t);
         bool past = p.z - r0 - k * t > scene_top && direction.z - k >= 0.0;
         if (past || t > scene_reach) return -1.0;
         if (gap <= 0.25) break;

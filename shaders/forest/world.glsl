@@ -45,8 +45,14 @@ vec2 atlas_coordinate(vec2 xy) {
 }
 
 // One voxel of a level, nearest to a place (u, v, h): red green, blue opacity, foot x y, distance wood, two bytes a channel.
-vec4 voxel_at(vec2 uv, float h, float level) {
-    return textureLod(pattern_voxels, vec3(uv, h), level) * 65535.0;
+vec4 voxel_at(vec3 place, float level) {
+    return textureLod(pattern_voxels, place, level) * 65535.0;
+}
+
+// Offset in atlas coordinates, for level 0, that makes the mean of nearest voxels trilinear interpolation: a box one voxel wide.
+vec3 voxel_offset(vec4 jitter) {
+    vec3 random = fract(vec3(jitter.w, jitter.w * 5.0 + jitter.z, jitter.w * 11.0 + jitter.y));
+    return (random - 0.5) * vec3(voxel_size / (4.0 * tile_side), voxel_size / (4.0 * tile_side), voxel_size / canopy_height);
 }
 
 vec2 two_bytes(float pair) {

@@ -8,19 +8,22 @@
 const float GLADE_REACH = 28.0;
 
 // Formulas g: front to back, T *= 1 - alpha'; alpha' = 1 - (1 - alpha)^step, a step being that share of a voxel.
-void geometry_trace(vec3 origin, vec3 direction, float t, float jitter, vec3 shift, inout Events events) {
-    float ds = geometry_step * voxel_size * exp2(events.level);
-    float rate = voxel_rate(direction) * exp2(-events.level);
+void geometry_trace(vec3 origin, vec3 direction, float t, vec4 jitter, inout Events events) {
+    float rate = voxel_rate(direction);
+    vec3 offset = voxel_offset(jitter);
     float previous = t;
-    t += ds * jitter;
+    t += geometry_step * voxel_size * exp2(level_at(t, jitter.z)) * jitter.x;
     int found = 1;
     for (int i = 0; i < MARCH_STEPS && found == 1; i++) {
+        float level = level_at(t, jitter.z);
+        float scale = exp2(level);
+        float ds = geometry_step * voxel_size * scale;
         vec3 p = origin + t * direction;
         float above = p.z - ground_height(p.xy);
-        float gap = above - canopy_height;
+        float gap = above - canopy_top;
         bool over = gap > 0.0;
         float h = clamp(above / canopy_height, 0.0, 1.0);
-        vec4 voxel = voxel_at(atlas_coordinate(p.xy) + shift.xy, h + shift.z, events.level);
+        vec4 voxel = voxel_at(vec3(atlas_coordinate(p.xy), h) + scale * offset, level);
         bool gone = t > scene_reach || (over && direction.z >= 0.0 && p.z > scene_top);
         found = above <= 0.0 ? 2 : gone ? 0 : 1;
         vec2 stand = cover_at(foot_of(p.xy, voxel));
@@ -33,7 +36,7 @@ void geometry_trace(vec3 origin, vec3 direction, float t, float jitter, vec3 shi
         add_event(events, vec4(p, h), voxel, opacity);
         if (found == 1) {
             previous = t;
-            float skip = max((free_voxels(voxel) - 1.0) / rate, stand.y - GLADE_REACH);
+            float skip = max((free_voxels(voxel) - 1.0) * scale / rate, stand.y - GLADE_REACH);
             t += over ? max(step_above(gap, direction), 0.5 * ds) : max(ds, skip);
         }
     }

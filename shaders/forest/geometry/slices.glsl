@@ -12,15 +12,16 @@ float to_next_sheet(float above, float climb, float spacing, out float sheet) {
 }
 
 // Formulas b2: alpha' = 1 - (1 - alpha)^(d' / voxel).
-void geometry_trace(vec3 origin, vec3 direction, float t, float jitter, vec3 shift, inout Events events) {
+void geometry_trace(vec3 origin, vec3 direction, float t, vec4 jitter, inout Events events) {
     float spacing = canopy_height / float(geometry_count);
     float longest = 2.0 * spacing;
+    vec3 offset = voxel_offset(jitter) * vec3(1.0, 1.0, 0.0);
     float previous = t;
     int found = 1;
     for (int i = 0; i < MARCH_STEPS && found == 1; i++) {
         vec3 p = origin + t * direction;
         float above = p.z - ground_height(p.xy);
-        float gap = above - canopy_height;
+        float gap = above - canopy_top;
         vec3 ahead = p + 0.25 * direction;
         float climb = (ahead.z - ground_height(ahead.xy) - above) * 4.0;
         float sheet;
@@ -31,8 +32,9 @@ void geometry_trace(vec3 origin, vec3 direction, float t, float jitter, vec3 shi
         float hit = t + max(reach, 1e-3);
         vec3 q = origin + hit * direction;
         float h = clamp((sheet + 0.5) / float(geometry_count), 0.0, 1.0);
-        vec4 voxel = voxel_at(atlas_coordinate(q.xy) + shift.xy, h, events.level);
-        float voxels = min(spacing / max(abs(climb), 0.02), 8.0 * spacing) / (voxel_size * exp2(events.level));
+        float level = level_at(hit, jitter.z);
+        vec4 voxel = voxel_at(vec3(atlas_coordinate(q.xy), h) + exp2(level) * offset, level);
+        float voxels = min(spacing / max(abs(climb), 0.02), 8.0 * spacing) / (voxel_size * exp2(level));
         float path = geometry_correct_opacity ? voxels : 1.0;
         float alpha = meets && found == 1 ? (1.0 - pow(1.0 - opacity_of(voxel), path)) * covered(foot_of(q.xy, voxel)) : 0.0;
         float opacity = 1.0 - (1.0 - events.opacity) * (1.0 - alpha);

@@ -19,14 +19,14 @@ vec4 shadow_depth_texel(vec2 pixel) {
         float above = p.z - ground_height(p.xy);
         if (above <= 0.0) return vec4(ground_crossing(origin, direction, previous, t));
         previous = t;
-        float gap = above - canopy_height;
+        float gap = above - canopy_top;
         if (gap > 0.0) {
             if (t > scene_reach + length(origin - shadow_corner)) break;
             t += max(step_above(gap, direction), 0.5 * voxel_size);
             continue;
         }
         float h = above / canopy_height;
-        vec4 voxel = voxel_at(atlas_coordinate(p.xy), h, 0.0);
+        vec4 voxel = voxel_at(vec3(atlas_coordinate(p.xy), h), 0.0);
         if (opacity_of(voxel) * covered(foot_of(p.xy, voxel)) >= shadow_threshold) return vec4(t);
         t += max((free_voxels(voxel) - 1.0) / rate, 0.5 * voxel_size);
     }

@@ -8,6 +8,5 @@
 
 float shadow_visibility(vec3 position, float h, vec2 uv) {
     float canopy = textureLod(shadow_canopy, uv, 0.0).r * stand_towards_sun(position.xy);
-    float gamma = max(textureLod(shadow_terrain, terrain_coordinate(position.xy), 0.0).r, canopy);
-    return mix(1.0, horizon_lit(gamma, sun_elevation, shadow_softness), shadow_strength);
+    return horizon_visibility(textureLod(shadow_terrain, terrain_coordinate(position.xy), 0.0).r, canopy);
 }
