@@ -22,7 +22,7 @@ lint: setup-test ## Lint and types
 	$(BIN)/ruff check .
 	$(BIN)/mypy
 
-bench: setup ## Frame times per technique and preset, in milliseconds and yardsticks
+bench: setup-test ## Frame times per technique and preset, in milliseconds and yardsticks
 	$(BIN)/umbrage bench $(ARGS)
 
 study: setup ## Error of every combination of techniques against the reference, with charts
