@@ -29,13 +29,14 @@ MARCH_STEPS = 1024
 LIGHT_EVENTS = 2
 """Levels of opacity at which a ray evaluates light; more cost more and a single frame has less noise."""
 
-WORLD_DECLARATIONS = """uniform sampler2D heights;        // m: coefficients of each cell
+WORLD_DECLARATIONS = """uniform sampler2D heights;        // coefficients of each cell, as shares of terrain_range
 uniform sampler2D normals;
 uniform sampler2D cover;
 uniform sampler3D pattern_voxels;
 uniform sampler3D pattern_normal;
 uniform sampler2D tiles;
 uniform sampler2D scout;          // m: where the rays of a block of pixels begin, row 0 the top
+uniform vec2 terrain_range;       // m
 uniform float terrain_cell;       // m
 uniform float terrain_nodes;
 uniform float terrain_steepness;  // greatest rise over run

@@ -11,7 +11,7 @@ import numpy as np
 from renderer.core.params import uniforms
 from renderer.core.technique import BakedArrays
 from renderer.forest.program import SCOUT_BLOCK, frame_source, pass_source, scout_source
-from renderer.forest.textures import ground_textures, pattern_textures, tile_map
+from renderer.forest.textures import bilinear_cells, ground_textures, pattern_textures, tile_map
 from renderer.forest.world_scale import CANOPY_HEIGHT, CELL, NODES, REACH, TILE_SIDE, VOXEL
 from renderer.gl.context import GL
 from renderer.gl.program import AnyTexture
@@ -35,7 +35,7 @@ class ForestRenderer:
         self._gl = gl
         self._baked = Resident(gl, 6)
         self._moment = Resident(gl, 24)
-        self._bounds: dict[tuple[str, str], tuple[float, float, float]] = {}
+        self._bounds: dict[tuple[str, str], dict[str, Any]] = {}
 
     def draw(
         self, state: ForestState, baked: Baked, size: tuple[int, int], offset: tuple[float, float], sample: int
@@ -83,24 +83,25 @@ class ForestRenderer:
     def _world(self, state: ForestState, baked: Baked) -> dict[str, Any]:
         ground, pattern = baked["terrain"], baked["pattern"]
         if (ground.key, pattern.key) not in self._bounds:
-            self._bounds[ground.key, pattern.key] = (*relief(ground.arrays["elevation"]), tallest(pattern.arrays["colour"]))
-        steepness, summit, tree = self._bounds[ground.key, pattern.key]
+            elevation = ground.arrays["elevation"]
+            self._bounds[ground.key, pattern.key] = {
+                "terrain_range": bilinear_cells(elevation)[1],
+                **bounds(elevation, tallest(pattern.arrays["colour"])),
+            }
         now = sky_for(baked["sky"].arrays, angles(state.sun)[1])
         sun = direction(state.sun)
         return {
             "terrain_cell": CELL,
             "terrain_nodes": float(NODES),
-            "terrain_steepness": steepness,
             "tile_side": TILE_SIDE,
             "voxel_size": VOXEL,
             "canopy_height": CANOPY_HEIGHT,
-            "canopy_top": tree,
-            "scene_top": summit + tree,
             "scene_reach": REACH,
             "sun_direction": sun,
             "sun_elevation": angles(state.sun)[1],
             "sun_irradiance": now.sun_irradiance,
             "sky_irradiance": now.sky_irradiance,
+            **self._bounds[ground.key, pattern.key],
             **sky_uniforms(now, sun),
             **uniforms(state.ground, "ground"),
         }
@@ -206,12 +207,16 @@ class ForestRenderer:
         return {"pixel_angle": 2 * math.tan(math.radians(state.camera.field_of_view) / 2) / size[1], "pixel_width": 0.0}
 
 
-def relief(elevation: np.ndarray) -> tuple[float, float]:
-    """Steepest rise over run of the bilinear ground, and its highest point [m]."""
+def bounds(elevation: np.ndarray, tree: float) -> dict[str, float]:
+    """What no ray need look beyond: the steepest rise over run of the bilinear ground, and the tops of trees and scene [m]."""
     east = np.abs(np.diff(elevation, axis=1)) / CELL
     north = np.abs(np.diff(elevation, axis=0)) / CELL
     steepest = np.hypot(np.maximum(east[:-1], east[1:]), np.maximum(north[:, :-1], north[:, 1:])).max()
-    return float(steepest), float(elevation.max())
+    return {
+        "terrain_steepness": float(steepest),
+        "canopy_top": tree,
+        "scene_top": float(elevation.max()) + tree,
+    }
 
 
 def tallest(colour: np.ndarray) -> float:

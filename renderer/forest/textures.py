@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import moderngl
 import numpy as np
 from scipy.ndimage import distance_transform_edt
 
@@ -16,19 +17,28 @@ from renderer.world.terrain import normals
 COVER_FINER = 2
 """How many times finer the yes-or-no map of trees is than the terrain grid: 4 m, less than a crown."""
 
-TILE_MAP = 512
-"""Cells a side of the patch of tiles that is kept: 20 km, beyond what is drawn."""
+HALF = 32768 / 65535
+"""What 16 bits hold for no rise: exactly, so that flat ground is flat."""
+
+TILE_MAP = 256
+"""Cells a side of the patch of tiles that is kept: 10 km, more than twice the square; farther out it comes round again."""
 
 
-def bilinear_cells(elevation: np.ndarray) -> np.ndarray:
-    """The four coefficients of each cell's bilinear height, (N, N, 4) float32, row 0 at the south.
+def bilinear_cells(elevation: np.ndarray) -> tuple[np.ndarray, tuple[float, float]]:
+    """The four coefficients of each cell's bilinear height, (N, N, 4) uint16, row 0 at the south, and their two ranges [m].
 
-    One unfiltered fetch then gives the exact height, where filtering four heights in hardware costs twice as much.
+    One unfiltered fetch of eight bytes then gives the height, where filtering four heights in hardware costs twice as much.
+    The first is a share of the first range, which the whole relief spans; the others, of the second either way from 0.5: 16
+    bits keep a relief of 700 m to 1 cm.
     """
-    height = elevation[::-1]
+    height = elevation[::-1].astype(np.float64)
     padded = np.pad(height, ((0, 1), (0, 1)), mode="edge")
     here, east, north, both = padded[:-1, :-1], padded[:-1, 1:], padded[1:, :-1], padded[1:, 1:]
-    return np.stack([here, east - here, north - here, here - east - north + both], axis=-1).astype(np.float32)
+    rises = np.stack([east - here, north - here, here - east - north + both], axis=-1)
+    relief = max(float(height.max()), 1.0)
+    rise = max(float(np.abs(rises).max()), 1e-3)
+    shares = np.concatenate([here[..., None] / relief, rises / (2 * rise) + HALF], axis=-1)
+    return np.rint(shares * 65535).astype(np.uint16), (relief, rise)
 
 
 def fine_cover(cover: np.ndarray) -> np.ndarray:
@@ -51,7 +61,7 @@ def ground_textures(gl: GL, ground: Arrays) -> dict[str, AnyTexture]:
     """`heights`, `normals` and `cover` from the `terrain` bake."""
     slope = normals(ground["elevation"], (CELL, CELL))[::-1]
     return {
-        "heights": gl.texture2d(bilinear_cells(ground["elevation"]), filter="nearest"),
+        "heights": gl.texture2d(bilinear_cells(ground["elevation"])[0], filter="nearest"),
         "normals": gl.texture2d(np.concatenate([slope, np.zeros_like(slope[..., :1])], axis=-1).astype(np.float16)),
         "cover": gl.texture2d(fine_cover(ground["cover"]), filter="nearest"),
     }
@@ -72,9 +82,12 @@ def pattern_textures(gl: GL, pattern: Arrays) -> dict[str, AnyTexture]:
     wrap: tuple[Wrap, Wrap, Wrap] = ("repeat", "repeat", "clamp")
     voxels = [packed(level["colour"], level["anchor"]) for level in levels]
     normals_of = [level["normal"] for level in levels]
+    shaded = gl.texture3d(normals_of[0], "linear", wrap, normals_of[1:])
+    # The level asked for is always whole: blending two levels would fetch twice for nothing.
+    shaded.filter = moderngl.LINEAR_MIPMAP_NEAREST, moderngl.LINEAR
     return {
         "pattern_voxels": gl.texture3d(voxels[0], "nearest", wrap, voxels[1:]),
-        "pattern_normal": gl.texture3d(normals_of[0], "nearest", wrap, normals_of[1:]),
+        "pattern_normal": shaded,
     }
 
 

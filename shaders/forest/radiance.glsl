@@ -9,7 +9,7 @@ vec4 forest_radiance(vec3 origin, vec3 direction, float start, vec4 jitter) {
     for (int k = 0; k < LIGHT_EVENTS; k++) {
         float reached = events.place[k].w == NOTHING ? 0.0 : 1.0 / float(LIGHT_EVENTS);
         float level = level_at(dot(events.place[k].xyz - origin, direction), jitter.z);
-        radiance += reached * outgoing(events.place[k], events.voxel[k], exp2(level) * voxel_offset(jitter), level);
+        radiance += reached * outgoing(events.place[k], events.voxel[k], level);
     }
     return vec4(radiance, events.opacity);
 }

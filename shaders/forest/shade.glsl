@@ -4,11 +4,11 @@
 
 const float INVERSE_PI = 0.3183098861837907;
 
-vec3 outgoing(vec4 place, vec4 voxel, vec3 shift, float level) {
+vec3 outgoing(vec4 place, vec4 voxel, float level) {
     bool on_ground = place.w == GROUND;
     float h = max(place.w, 0.0);
     vec2 uv = atlas_coordinate(place.xy);
-    vec4 texel = textureLod(pattern_normal, vec3(uv, h) + shift, level);
+    vec4 texel = textureLod(pattern_normal, vec3(uv, h), level);
     vec3 slope = ground_normal(place.xy);
     vec3 normal = on_ground ? slope : normalize(texel.xyz * 2.0 - 1.0 + vec3(0.0, 0.0, 1e-4));
     float wooded = on_ground ? covered(place.xy) : 1.0;

@@ -8,13 +8,15 @@ vec2 terrain_coordinate(vec2 xy) {
     return xy / (terrain_cell * terrain_nodes) + 0.5;
 }
 
-// Bilinear height: one texel holds its cell's four coefficients (value at the south-west node, east, north, and both).
+// Bilinear height: one texel holds its cell's four coefficients (value at the south-west node, east, north, and both) as shares of
+// terrain_range.x and, either way from one half, of terrain_range.y.
 float ground_height(vec2 xy) {
     vec2 place = clamp(xy / terrain_cell + 0.5 * (terrain_nodes - 1.0), 0.0, terrain_nodes - 1.001);
     vec2 corner = floor(place);
     vec2 f = place - corner;
     vec4 cell = textureLod(heights, (corner + 0.5) / terrain_nodes, 0.0);
-    return cell.x + f.x * cell.y + f.y * (cell.z + f.x * cell.w);
+    vec3 rise = cell.yzw - 32768.0 / 65535.0;
+    return cell.x * terrain_range.x + (f.x * rise.x + f.y * (rise.y + f.x * rise.z)) * 2.0 * terrain_range.y;
 }
 
 vec3 ground_normal(vec2 xy) {
