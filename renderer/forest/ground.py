@@ -14,7 +14,6 @@ from renderer.core.technique import Arrays
 from renderer.forest.world_scale import CELL, NODES, STAND_TOP
 from renderer.world.terrain import DEFAULT_CENTRE, TerrainReading, crop, default_terrain, load_terrain
 
-
 RIM = 3
 """Nodes along the square's edge that always bear forest."""
 
@@ -66,8 +65,8 @@ def bake_ground(arguments: dict[str, Any], inputs: dict[str, Arrays], progress: 
         arguments: `terrain` and `cover`, as in the document.
 
     Returns:
-        `elevation` (N, N) float32 [m], `cover` (N, N) float32, `surface` (N, N) float32 [m] with the stands' tops, `base` ()
-        float64 [m]; row 0 is the northern edge.
+        `elevation` (N, N) float32 [m], `cover` (N, N) float32, `surface` (N, N) float32 [m] with the stands' tops,
+        `base` () float64 [m]; row 0 is the northern edge.
     """
     progress(0.1, "reading the terrain")
     terrain = square(arguments["terrain"])
@@ -76,4 +75,4 @@ def bake_ground(arguments: dict[str, Any], inputs: dict[str, Arrays], progress: 
     progress(0.6, "laying out the forest")
     cover = cover_map(elevation, base, arguments["cover"])
     surface = elevation + np.float32(STAND_TOP) * (cover > 0.5)
-    return {"elevation": elevation, "cover": cover, "surface": surface, "base": np.float64(base)}
+    return {"elevation": elevation, "cover": cover, "surface": surface, "base": np.array(base)}
