@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+import time
 from collections import OrderedDict
 from collections.abc import Callable, Mapping
 from concurrent.futures import Executor, Future
@@ -12,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from renderer.core.baking import bake_key
 from renderer.core.cache import AssetStore, Cache
 from renderer.core.channel import Progress
-from renderer.core.errors import InputError
+from renderer.core.errors import InputError, UmbrageError
 from renderer.core.params import merge, set_path, validate
 from renderer.core.registry import phenomena, phenomenon
 from renderer.core.technique import Arrays, Bake, BakedArrays
@@ -20,7 +21,7 @@ from renderer.core.work import Workers
 from renderer.describing import slots_of
 from renderer.gl.thread import GLThread
 from renderer.picture import Frame, Picture
-from renderer.view import Painter, Place, View
+from renderer.view import Painter, Place, View, paint
 from renderer.world.sampling import offset
 from renderer.world.state import SceneState, migrate, samples_of
 
@@ -198,8 +199,14 @@ class Session:
         """As `render`, with so many samples, each at its `place` in the pixel; blocks."""
         if not self.prepared(state):
             self.prepare(state, on_progress).future.result()
-        arrays = self._arrays(state)
-        return self.gl.submit(self._painter.picture, state, arrays, (width, height), samples, place).result()
+        started = time.monotonic()
+
+        def tell(done: int) -> None:
+            if on_progress is not None and done:
+                left = (time.monotonic() - started) * (samples - done) / done
+                on_progress(Progress("picture", done / samples, f"sample {done} of {samples}", left))
+
+        return paint(self.gl, self._painter, state, self._arrays(state), (width, height), samples, place, tell)
 
     def compute(self, bake: Bake, on_progress: Report | None = None) -> Arrays:
         """The arrays of one bake, from the cache or from a worker process; blocks.
@@ -292,5 +299,17 @@ class Session:
                 self._loaded.popitem(last=False)
 
     def _arrays(self, state: SceneState) -> dict[str, BakedArrays]:
-        with self._lock:
-            return {bake.name: self._loaded[bake_key(bake)] for bake in self._bakes(state)}
+        """What the state needs, from memory, or from the cache where other states have pushed it out."""
+        found = {}
+        for bake in self._bakes(state):
+            key = bake_key(bake)
+            with self._lock:
+                held = self._loaded.get(key)
+            if held is None:
+                arrays = self.cache.get(key)
+                if arrays is None:
+                    raise UmbrageError(f"{bake.name} is not baked for this state; prepare it first")
+                self._keep([bake], {bake.name: arrays})
+                held = BakedArrays(key, arrays)
+            found[bake.name] = held
+        return found

@@ -59,20 +59,48 @@ class Painter:
         )
         return self._tone.read_rgb8()
 
-    def picture(
-        self, gl: GL, state: SceneState, baked: Baked, size: tuple[int, int], samples: int, place: Place = offset
-    ) -> Picture:
-        """Draw a whole picture of so many samples, each at its `place` in the pixel."""
-        started = time.perf_counter()
-        sums = Accumulator(gl, *size)
-        try:
-            self.add_samples(gl, sums, state, baked, samples, place)
-            rgb8 = self.displayed(gl, sums, state)
-            linear = sums.read_mean()
-        finally:
-            sums.release()
+    def picture(self, gl: GL, state: SceneState, sums: Accumulator, render_ms: float) -> Picture:
+        """The finished picture of a sum of samples."""
         meta = {"state": state.model_dump(mode="json"), "renderer": gl.info.renderer, "software": gl.info.software}
-        return Picture(linear, rgb8, samples, (time.perf_counter() - started) * 1e3, meta)
+        return Picture(sums.read_mean(), self.displayed(gl, sums, state), sums.samples, render_ms, meta)
+
+
+def paint(
+    thread: GLThread,
+    painter: Painter,
+    state: SceneState,
+    baked: Baked,
+    size: tuple[int, int],
+    samples: int,
+    place: Place = offset,
+    on_sample: Callable[[int], None] = lambda done: None,
+) -> Picture:
+    """Draw a whole picture, each sample in a turn of its own so that no view waits for all of them; blocks.
+
+    Args:
+        samples: a pixel, each at its `place` in the pixel.
+        on_sample: told how many are done; may raise `Cancelled`.
+    """
+    started = time.perf_counter()
+    sums = thread.call(_new_sums, size)
+    try:
+        for done in range(samples):
+            on_sample(done)
+            thread.submit(painter.add_samples, sums, state, baked, 1, place).result()
+        return thread.submit(painter.picture, state, sums, (time.perf_counter() - started) * 1e3).result()
+    finally:
+        thread.submit(_free_sums, sums)
+
+
+def _new_sums(gl: GL, size: tuple[int, int]) -> Accumulator:
+    sums = Accumulator(gl, *size)
+    gl.at_close(sums)
+    return sums
+
+
+def _free_sums(gl: GL, sums: Accumulator) -> None:
+    gl.forget(sums)
+    sums.release()
 
 
 class View:
@@ -103,6 +131,14 @@ class View:
         """
         return self._thread.post(self._name, self._draw, state, (width, height), more)
 
+    def probe(self, state: SceneState, x: float, y: float) -> Future[dict[str, Any]]:
+        """What lies at a point of the picture last drawn: the scene's own facts, and the radiance there.
+
+        Args:
+            state: checked and prepared. x, y: place in the picture, in [0, 1], row 0 at the top.
+        """
+        return self._thread.submit(self._probe, state, x, y)
+
     def close(self) -> None:
         """Free the canvas."""
         self._thread.submit(self._release)
@@ -110,8 +146,7 @@ class View:
     def _draw(self, gl: GL, state: SceneState, size: tuple[int, int], more: int) -> Frame:
         started = time.perf_counter()
         if self._sums is None:
-            self._sums = Accumulator(gl, *size)
-            gl.at_close(self._sums)
+            self._sums = _new_sums(gl, size)
         if self._sums.size != size:
             self._sums.resize(*size)
         wanted = samples_of(state.quality)
@@ -136,10 +171,18 @@ class View:
             technique_words(state),
         )
 
+    def _probe(self, gl: GL, state: SceneState, x: float, y: float) -> dict[str, Any]:
+        arrays = {name: entry.arrays for name, entry in self._arrays(state).items()}
+        size = self._sums.size if self._sums is not None else (512, 512)
+        facts = phenomenon(state.scene).probe(state, arrays, x, y, size)
+        if self._sums is not None and self._sums.samples:
+            column, row = min(int(x * size[0]), size[0] - 1), min(int(y * size[1]), size[1] - 1)
+            facts["radiance"] = [float(value) for value in self._sums.read_mean()[row, column, :3]]
+        return facts
+
     def _release(self, gl: GL) -> None:
         if self._sums is not None:
-            gl.forget(self._sums)
-            self._sums.release()
+            _free_sums(gl, self._sums)
             self._sums = None
 
 

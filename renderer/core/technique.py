@@ -116,6 +116,8 @@ class Phenomenon:
         world: `(state, arrays of the bakes by name) -> plain arrays and numbers`: what is drawn, whatever the
             techniques, for a reference that shares no code with them.
         world_needs: names of the bakes that `world` reads.
+        probe: `(state, arrays of the bakes by name, x, y, (width, height)) -> facts` about a point of the picture, as
+            JSON values.
     """
 
     name: str
@@ -128,6 +130,7 @@ class Phenomenon:
     open: Callable[[Any], SceneRenderer]
     world: Callable[[Any, Mapping[str, Arrays]], dict[str, Any]]
     world_needs: tuple[str, ...]
+    probe: Callable[[Any, Mapping[str, Arrays], float, float, tuple[int, int]], dict[str, Any]]
 
 
 @dataclass(frozen=True)

@@ -35,7 +35,12 @@ def terrain_horizon_bake(terrain: Bake, sectors: int) -> Bake:
 def canopy_horizon_bake(pattern: Bake, sectors: int, heights: list[float]) -> Bake:
     """Canopy horizon over the tile at each height."""
     return Bake(
-        "canopy_horizon", bake_canopy_horizon, {"sectors": sectors, "heights": heights}, (pattern,), version=2, seconds=5
+        "canopy_horizon",
+        bake_canopy_horizon,
+        {"sectors": sectors, "heights": heights},
+        (pattern,),
+        version=2,
+        seconds=5,
     )
 
 

@@ -6,6 +6,7 @@ from typing import Any
 
 from renderer.core.technique import Phenomenon, Preset, Slot
 from renderer.forest.bakes import bakes
+from renderer.forest.probe import probe
 from renderer.forest.renderer import ForestRenderer
 from renderer.forest.state import DEFAULTS, ForestState
 from renderer.forest.world_arrays import NEEDS, world_arrays
@@ -55,6 +56,7 @@ SLOTS = (
     ),
 )
 
+
 def _orbit(target: tuple[float, float, float], distance: float, azimuth: float, elevation: float) -> dict[str, Any]:
     return {"kind": "orbit", "target": list(target), "distance": distance, "azimuth": azimuth, "elevation": elevation}
 
@@ -101,4 +103,5 @@ PHENOMENON = Phenomenon(
     open=ForestRenderer,
     world=world_arrays,
     world_needs=NEEDS,
+    probe=probe,
 )

@@ -208,7 +208,7 @@ class ForestRenderer:
 
 
 def bounds(elevation: np.ndarray, tree: float) -> dict[str, float]:
-    """What no ray need look beyond: the steepest rise over run of the bilinear ground, and the tops of trees and scene [m]."""
+    """What no ray need look beyond: the steepest rise over run of the ground, and the tops of trees and scene [m]."""
     east = np.abs(np.diff(elevation, axis=1)) / CELL
     north = np.abs(np.diff(elevation, axis=0)) / CELL
     steepest = np.hypot(np.maximum(east[:-1], east[1:]), np.maximum(north[:, :-1], north[:, 1:])).max()

@@ -125,8 +125,16 @@ class Ground(Model):
     )
 
 
+FITTED: dict[str, dict[str, Any]] = {
+    "shadow": {"strength": 0.7, "softness": 5.0},
+    "height_shading": {"foot": 0.1, "rise": 0.8},
+}
+"""Strengths that come closest to the reference over five views and suns, where the thesis sets them by eye (Cohen 2004,
+section 5.4); the techniques' own defaults stay the thesis'."""
+
+
 def _slot(name: str, title: str, help_text: str) -> Any:
-    return param({"kind": DEFAULTS[name]}, label=title, help=help_text, cost="host")
+    return param({"kind": DEFAULTS[name], **FITTED.get(name, {})}, label=title, help=help_text, cost="host")
 
 
 class ForestState(SceneState):

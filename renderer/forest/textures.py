@@ -21,15 +21,15 @@ HALF = 32768 / 65535
 """What 16 bits hold for no rise: exactly, so that flat ground is flat."""
 
 TILE_MAP = 256
-"""Cells a side of the patch of tiles that is kept: 10 km, more than twice the square; farther out it comes round again."""
+"""Cells a side of the patch of tiles that is kept: 10 km, twice the square; farther out it comes round again."""
 
 
 def bilinear_cells(elevation: np.ndarray) -> tuple[np.ndarray, tuple[float, float]]:
-    """The four coefficients of each cell's bilinear height, (N, N, 4) uint16, row 0 at the south, and their two ranges [m].
+    """Coefficients of each cell's bilinear height, (N, N, 4) uint16, row 0 at the south, and their two ranges [m].
 
-    One unfiltered fetch of eight bytes then gives the height, where filtering four heights in hardware costs twice as much.
-    The first is a share of the first range, which the whole relief spans; the others, of the second either way from 0.5: 16
-    bits keep a relief of 700 m to 1 cm.
+    One unfiltered fetch of eight bytes then gives the height, where filtering four heights in hardware costs twice as
+    much. The first is a share of the first range, which the whole relief spans; the others, of the second either way
+    from 0.5: 16 bits keep a relief of 700 m to 1 cm.
     """
     height = elevation[::-1].astype(np.float64)
     padded = np.pad(height, ((0, 1), (0, 1)), mode="edge")

@@ -41,7 +41,7 @@ class DoubleHorizonMap(ForestTechnique):
         source="Cohen 2004, section 3.1",
     )
     height_top: float = param(
-        0.75,
+        0.7,
         label="Height of the top map",
         help="Normalised canopy height of the upper probes: the treetops.",
         unit="ratio",
@@ -51,7 +51,7 @@ class DoubleHorizonMap(ForestTechnique):
         source="Cohen 2004, section 3.1",
     )
     height_low: float = param(
-        0.5,
+        0.35,
         label="Height of the low map",
         help="Normalised canopy height of the lower probes.",
         unit="ratio",
