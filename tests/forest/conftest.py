@@ -12,31 +12,21 @@ import pytest
 from renderer.core.params import uniform_declarations, uniforms
 from renderer.core.technique import Arrays, BakedArrays
 from renderer.forest import program
-from renderer.forest.renderer import relief
+from renderer.forest.renderer import ForestRenderer
 from renderer.forest.state import ForestState, Ground
 from renderer.forest.technique import ForestTechnique
-from renderer.forest.textures import TILE_MAP, ground_textures, pattern_textures, tile_map
-from renderer.forest.world_scale import CANOPY_HEIGHT, CELL, NODES, REACH, TILE_SIDE, VOXEL
 from renderer.gl import source
 from renderer.gl.context import GL
 from renderer.gl.probe import probe
-from renderer.gl.resident import Resident
 from renderer.gl.thread import GLThread
 from renderer.picture import Picture
 from renderer.view import Painter
-from renderer.world.sun import angles, direction
 from tests.forest import worlds
 from tests.forest.truth import Judge
 
 Ask = Callable[..., np.ndarray]
 Paint = Callable[..., Picture]
 Spoil = Callable[[str, str, str], AbstractContextManager[None]]
-
-LIMITS = {
-    "ENTRY_STEPS": program.ENTRY_STEPS, "MARCH_STEPS": program.MARCH_STEPS, "LIGHT_EVENTS": program.LIGHT_EVENTS,
-    "TILE_MAP": f"{TILE_MAP}.0", "SCOUT_BLOCK": f"{program.SCOUT_BLOCK}.0",
-}
-
 
 @pytest.fixture(scope="session")
 def thread() -> Iterator[GLThread]:
@@ -59,13 +49,13 @@ def paint(thread: GLThread) -> Paint:
 @pytest.fixture(scope="session")
 def ask(thread: GLThread) -> Ask:
     """Evaluates GLSL of the forest in a world: see `_asked`."""
-    residents: list[Resident] = []
-    return lambda *args, **keywords: thread.call(_asked, residents, *args, **keywords)
+    drawers: list[ForestRenderer] = []
+    return lambda *args, **keywords: thread.call(_asked, drawers, *args, **keywords)
 
 
 def _asked(
     gl: GL,
-    residents: list[Resident],
+    drawers: list[ForestRenderer],
     files: Sequence[str],
     body: str,
     inputs: Mapping[str, np.ndarray],
@@ -82,40 +72,32 @@ def _asked(
     """Evaluate GLSL for N inputs among the world's samplers and uniforms.
 
     Args:
-        residents: keeps the textures of the worlds that were asked last; empty at first.
+        drawers: empty at first; then the renderer whose textures and uniforms are asked.
         files: beside `forest/world.glsl`, which always comes first.
         terrain, pattern: bakes; level ground and an empty pattern by default.
         state: for sun, ground and seed. techniques: by slot, whose live parameters are declared and set.
         textures: of those techniques, by their full names. values: more uniforms. declarations: of those.
     """
-    if not residents:
-        residents.append(Resident(gl, 12))
-    kept, held = residents[0], dict[str, Any]()
+    if not drawers:
+        drawers.append(ForestRenderer(gl))
     state = state or worlds.state()
-    terrain, pattern, seed = terrain or worlds.ground(), pattern or worlds.uniform(0), state.ground.map_seed
-    steepness, top = relief(terrain["elevation"])
-    for key, entry in worlds.together(terrain=terrain, pattern=pattern).items():
-        make = ground_textures if key == "terrain" else pattern_textures
-        held |= kept.get(entry.key, lambda e=entry, m=make: m(gl, e.arrays))  # type: ignore[misc]
-    held |= kept.get(seed, lambda: {"tiles": gl.texture2d(tile_map(seed), "nearest", "repeat")})
+    baked = worlds.together(sky=worlds.sky(), terrain=terrain or worlds.ground(), pattern=pattern or worlds.uniform(0))
     made = {
         "scout": gl.texture2d(np.zeros((1, 1), np.float32)),
         **{name: gl.texture2d(np.asarray(a, np.float32), wrap="repeat") for name, a in (textures or {}).items()},
     }
+    # What the renderer itself gives the world's uniforms and samplers, whatever they are.
+    held = drawers[0]._world_textures(state, baked)
+    given: dict[str, Any] = {**drawers[0]._world(state, baked), "sun_irradiance": worlds.E_SUN,
+                             "sky_irradiance": worlds.E_SKY, "pixel_angle": 0.0, "pixel_width": 0.0}
     text = [program.WORLD_DECLARATIONS, uniform_declarations(Ground, "ground")]
-    given: dict[str, Any] = {
-        "terrain_cell": CELL, "terrain_nodes": float(NODES), "terrain_steepness": steepness, "tile_side": TILE_SIDE,
-        "voxel_size": VOXEL, "canopy_height": CANOPY_HEIGHT, "scene_top": top + CANOPY_HEIGHT, "scene_reach": REACH,
-        "sun_direction": direction(state.sun), "sun_elevation": angles(state.sun)[1], "sun_irradiance": worlds.E_SUN,
-        "sky_irradiance": (1.0, 2.0, 4.0), **uniforms(state.ground, "ground"),
-    }
     for slot, technique in (techniques or {}).items():
         text += [uniform_declarations(type(technique), slot), *technique.extra_declarations]
         text += [f"uniform {kind} {slot}_{name};" for name, kind in technique.textures.items()]
         given |= uniforms(technique, slot) | technique.constants()
     try:
         return probe(gl, ["forest/world.glsl", *files], body, inputs, outputs, uniforms=given | dict(values or {}),
-                     textures=held | made, declarations="\n".join([*text, declarations]), defines=LIMITS)
+                     textures=held | made, declarations="\n".join([*text, declarations]), defines=program._limits())
     finally:
         for texture in made.values():
             texture.release()

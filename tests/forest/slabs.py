@@ -17,10 +17,10 @@ RAYS = 2048
 NOISE = 2.0 / RAYS + 1e-3
 """Of a share counted over stratified rays: two strata, and a thousandth for float32."""
 
-FILES = ("forest/crossing.glsl", "forest/events.glsl")
+FILES = ("forest/crossing.glsl", "forest/events.glsl", "forest/filter/none.glsl")
 
-TRACE = """Events events = no_events(0.0, xi);
-geometry_trace(origin, direction, 0.0, jitter, vec3(0.0), events);
+TRACE = """Events events = no_events(xi);
+geometry_trace(origin, direction, 0.0, vec4(jitter, xi, 0.5, 0.5), events);
 float bare = 0.0;
 for (int k = 0; k < LIGHT_EVENTS; k++) bare += events.place[k].w == GROUND ? 1.0 / float(LIGHT_EVENTS) : 0.0;
 result = vec4(bare, events.opacity, events.place[0].w, events.place[0].z);"""
@@ -33,8 +33,9 @@ def strata() -> tuple[np.ndarray, np.ndarray]:
 
 
 def plane(slope: float) -> dict[str, np.ndarray]:
-    """Wooded ground that rises `slope` metres a metre to the east, 0 at its western edge."""
-    return worlds.ground(np.arange(NODES)[None, :] * 8.0 * slope)
+    """Wooded ground that rises `slope` metres a metre to the east, lowest at 0."""
+    z = np.arange(NODES)[None, :] * 8.0 * slope
+    return worlds.ground(z - z.min())
 
 
 def trace(
@@ -55,8 +56,8 @@ def slab_error(
 ) -> float:
     """Error of the transmittance from the canopy's top to the ground, against (1 - alpha)^(path / voxel)."""
     d = np.asarray(direction, float) / np.linalg.norm(direction)
-    east = 8.0 * (NODES - 1) / 2
+    half = 8.0 * (NODES - 1) / 2
     path = CANOPY_HEIGHT / (slope * d[0] - d[2])
     exact = (1 - ALPHA / 255) ** (path / VOXEL)
-    found = trace(ask, technique, (0.0, 3.0, slope * east + CANOPY_HEIGHT), d, worlds.uniform(ALPHA), plane(slope))
+    found = trace(ask, technique, (0.0, 3.0, abs(slope) * half + CANOPY_HEIGHT), d, worlds.uniform(ALPHA), plane(slope))
     return abs(float(found[:, 0].mean()) - exact)

@@ -22,6 +22,9 @@ from renderer.world.sky import VIEW_SHAPE
 E_SUN = (3.0, 2.0, 1.0)
 """Irradiance of the sun in every hand-made world, W m-2, whatever its elevation."""
 
+E_SKY = (1.0, 2.0, 4.0)
+"""Irradiance of the sky on the horizontal wherever GLSL is asked on its own."""
+
 GROUND = (0.3, 0.2, 0.1)
 LAYERS, SIZE = 32, 256
 UP = (128, 128, 255)
@@ -107,11 +110,11 @@ VERSION = zlib.crc32(inspect.getsource(sys.modules[__name__]).encode())
 
 
 def grove_ground(arguments: dict[str, Any], inputs: dict[str, Arrays], progress: Progress) -> Arrays:
-    """Two low hills, a glade around the origin's east."""
+    """Two low hills, and a square glade whose edge falls on borders of the map of trees, so that it costs nothing."""
     x = (np.arange(NODES) - (NODES - 1) / 2) * CELL
     east, north = np.meshgrid(x, -x)
     z = 14 * (1 + np.sin(east / 60) * np.cos(north / 75)) + 10 * (1 + np.sin((east + north) / 210))
-    cover = np.clip(0.5 + (np.hypot(east - 45, north) - 30) / 16, 0, 1)
+    cover = np.where((np.abs(east - 45) < 30) & (np.abs(north) < 30), 0.0, 1.0)
     made = ground(z.astype(np.float32), cover.astype(np.float32))
     return {**made, "surface": made["elevation"] + np.float32(15) * (made["cover"] > 0.5)}
 

@@ -10,7 +10,7 @@ import pytest
 from renderer.forest.shadow.double_horizon_map import DoubleHorizonMap
 from renderer.forest.state import ForestState
 from tests.forest import worlds
-from tests.forest.horizons import EPS, threshold, threshold_error, visibility
+from tests.forest.horizons import EPS, threshold_error, twin, visibility
 from tests.forest.truth import Judge
 
 Ask = Callable[..., np.ndarray]
@@ -23,11 +23,11 @@ def weight_error(ask: Ask, low: float = 0.5, top: float = 1.0) -> float:
     """Worst error over heights and suns against w = clamp((h - h_low)/(h_top - h_low), 0, 1) (errata 000-1)."""
     made = DoubleHorizonMap(softness=EPS, height_low=low, height_top=top)
     w = np.clip((HEIGHTS - low) / (top - low), 0, 1)
-    gamma = np.radians(w * TOP + (1 - w) * LOW)
+    gamma = w * TOP + (1 - w) * LOW
     worst = 0.0
     for elevation in (-2, 1, 10, 17, 30, 44, 50, 89):
         found = visibility(ask, made, elevation, h=HEIGHTS, canopy=(TOP, LOW))
-        worst = max(worst, float(np.abs(found - threshold(gamma, np.radians(elevation), np.radians(EPS))).max()))
+        worst = max(worst, float(np.abs(found - twin(0, gamma, elevation, EPS)).max()))
     return worst
 
 
@@ -52,7 +52,7 @@ def test_a_top_map_below_the_low_one_breaks_nothing(ask: Ask) -> None:
 @pytest.mark.parametrize(("right", "wrong"), [
     ("clamp((h - shadow_low) / (shadow_top - shadow_low), 0.0, 1.0)", "h"),  # the listing's: errata 000-1
     ("mix(canopy.g, canopy.r, w)", "mix(canopy.r, canopy.g, w)"),
-    ("sun_elevation, shadow_softness", "sun_elevation, shadow_softness * 3.14159"),
+    ("return horizon_visibility(land, mix(", "return horizon_visibility(land, 3.14159 * mix("),
 ])
 def test_a_wrong_weight_is_found(ask: Ask, spoil: Callable, right: str, wrong: str) -> None:
     with spoil(FILE, right, wrong):

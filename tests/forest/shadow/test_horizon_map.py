@@ -10,7 +10,7 @@ import pytest
 from renderer.forest.horizon_textures import at_azimuth
 from renderer.forest.shadow.horizon_map import HorizonMap
 from tests.forest import worlds
-from tests.forest.horizons import EPS, threshold, threshold_error, visibility
+from tests.forest.horizons import EPS, threshold_error, twin, visibility
 from tests.forest.truth import Judge
 
 Ask = Callable[..., np.ndarray]
@@ -39,16 +39,17 @@ def twin_error(ask: Ask) -> float:
     for elevation in (-3.0, 0.5, 4.0, 20.0, 33.0, 80.0):
         for terrain, canopy, cover in ((0, 0, 1), (5, 18, 1), (35, 30, 1), (5, 18, 0), (35, 30, 0)):
             found = visibility(ask, MAP, elevation, terrain=terrain, canopy=(70, canopy), cover=cover)
-            gamma = np.radians(max(terrain, canopy * cover))
-            worst = max(worst, float(np.abs(found - threshold(gamma, np.radians(elevation), np.radians(EPS))).max()))
+            worst = max(worst, float(np.abs(found - twin(terrain, canopy * cover, elevation, EPS)).max()))
     return worst
 
 
-def test_the_higher_horizon_counts_and_trees_only_where_they_stand(ask: Ask) -> None:
+def test_land_and_trees_hide_the_sun_and_trees_only_where_they_stand(ask: Ask) -> None:
     assert twin_error(ask) < 1e-5
 
 
-@pytest.mark.parametrize(("right", "wrong"), [("max(", "min("), ("sun_elevation, ", "shadow_softness, ")])
+@pytest.mark.parametrize(("right", "wrong"), [
+    ("* stand_towards_sun(position.xy)", ""), ("return horizon_visibility(", "return 1.0 - horizon_visibility("),
+])
 def test_a_wrong_choice_of_horizon_is_found(ask: Ask, spoil: Callable, right: str, wrong: str) -> None:
     with spoil("forest/shadow/horizon_map.glsl", right, wrong):
         assert twin_error(ask) > 0.1
@@ -61,10 +62,11 @@ def test_light_only_grows_with_the_sun_and_none_comes_from_below(ask: Ask) -> No
     assert shares[-1] == 1
 
 
-def test_strength_blends_to_no_shadow(ask: Ask) -> None:
+def test_strength_blends_the_trees_to_no_shadow(ask: Ask) -> None:
     for strength in (0.0, 0.25, 1.0):
         made = HorizonMap(softness=EPS, strength=strength)
-        assert visibility(ask, made, 10.0, terrain=50.0)[0] == pytest.approx(1 - strength)
+        assert visibility(ask, made, 10.0, canopy=(0, 50))[0] == pytest.approx(1 - strength)
+        assert visibility(ask, made, 10.0, terrain=50.0)[0] == 0, "land lets no light through, whatever the strength"
 
 
 RNG = np.random.default_rng(8)
@@ -84,7 +86,7 @@ def test_the_map_of_the_technique_looks_towards_the_sun() -> None:
     """A wall in the north hides a northern sun; textures have their first row in the south."""
     north = np.zeros((4, 3, 2), np.float32)
     north[0] = [[0.3, 0.3], [0.2, 0.2], [0.1, 0.1]]  # rows from the northern edge on
-    bakes = {"terrain_horizon": {"sectors": north}, "canopy_horizon": {"sectors": np.zeros((2, 4, 2, 2), np.float32)}}
+    bakes = {"terrain_horizon": {"sectors": north}, "canopy_horizon": {"sectors": np.zeros((1, 4, 2, 2), np.float32)}}
     for azimuth, share in ((0, 1.0), (45, 0.5), (90, 0.0), (180, 0.0), (315, 0.5)):
         found = MAP.frame_textures(worlds.state(sun=worlds.sun(azimuth, 20)), bakes)["terrain"]
         np.testing.assert_allclose(found[:, 0], share * np.array([0.1, 0.2, 0.3]), atol=1e-6)

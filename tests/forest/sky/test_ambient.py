@@ -14,14 +14,12 @@ from tests.forest.truth import Judge
 
 Ask = Callable[..., np.ndarray]
 SHARES = np.linspace(0, 1, 9)
-E_SKY = np.array([1.0, 2.0, 4.0])
-"""As the worlds that are asked have it."""
 
 
 def error(ask: Ask) -> float:
     files = ["forest/sky/ambient.glsl"]
     found = ask(files, "sky_light(ambient)", {"ambient": SHARES}, 3, techniques={"sky": Ambient()})
-    return float(np.abs(found - SHARES[:, None] * E_SKY).max())
+    return float(np.abs(found - SHARES[:, None] * np.array(worlds.E_SKY)).max())
 
 
 def test_the_share_multiplies_the_sky(ask: Ask) -> None:
