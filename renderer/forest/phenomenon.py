@@ -16,7 +16,7 @@ SLOTS = (
         "geometry",
         "Geometry",
         "How the canopy is sampled along a ray.",
-        "void geometry_trace(vec3 origin, vec3 direction, float t, vec4 jitter, inout Events events) // m",
+        "void geometry_trace(vec3 origin, vec3 direction, float t, vec4 jitter, inout Event event) // m",
         DEFAULTS["geometry"],
     ),
     Slot(

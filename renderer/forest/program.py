@@ -26,9 +26,6 @@ SCOUT_BLOCK = 8
 MARCH_STEPS = 1024
 """Steps a ray may take inside the canopy layer."""
 
-LIGHT_EVENTS = 2
-"""Levels of opacity at which a ray evaluates light; more cost more and a single frame has less noise."""
-
 WORLD_DECLARATIONS = """uniform sampler2D heights;        // coefficients of each cell, as shares of terrain_range
 uniform sampler2D normals;
 uniform sampler2D cover;
@@ -40,6 +37,7 @@ uniform vec2 terrain_range;       // m
 uniform float terrain_cell;       // m
 uniform float terrain_nodes;
 uniform float terrain_steepness;  // greatest rise over run
+uniform float terrain_bend;       // m-1, greatest change of the slope along a line
 uniform float tile_side;          // m
 uniform float voxel_size;         // m
 uniform float canopy_height;      // m
@@ -128,7 +126,6 @@ def _limits() -> dict[str, str | int]:
     return {
         "ENTRY_STEPS": ENTRY_STEPS,
         "MARCH_STEPS": MARCH_STEPS,
-        "LIGHT_EVENTS": LIGHT_EVENTS,
         "TILE_MAP": f"{TILE_MAP}.0",
         "SCOUT_BLOCK": f"{SCOUT_BLOCK}.0",
     }

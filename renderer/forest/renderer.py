@@ -212,8 +212,12 @@ def bounds(elevation: np.ndarray, tree: float) -> dict[str, float]:
     east = np.abs(np.diff(elevation, axis=1)) / CELL
     north = np.abs(np.diff(elevation, axis=0)) / CELL
     steepest = np.hypot(np.maximum(east[:-1], east[1:]), np.maximum(north[:, :-1], north[:, 1:])).max()
+    # The slope along a line jumps where two cells meet, and changes steadily inside a twisted one.
+    jumps = [np.abs(np.diff(elevation, n=2, axis=axis)).max() / CELL**2 for axis in (0, 1)]
+    twist = np.abs(np.diff(np.diff(elevation, axis=0), axis=1)).max() / CELL**2
     return {
         "terrain_steepness": float(steepest),
+        "terrain_bend": float(sum(jumps) + 2 * twist),
         "canopy_top": tree,
         "scene_top": float(elevation.max()) + tree,
     }

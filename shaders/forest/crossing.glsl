@@ -1,9 +1,16 @@
 // Where a ray meets the canopy's envelope and the ground. Formulas i (heightfields), safe steps by the terrain's steepest slope.
 // Symbols: origin, direction the ray [m, unit]; t distance [m]; gap height above the canopy's top [m].
 
-// Height above the canopy divided by the fastest it can shrink per metre of ray: no step passes through.
-float step_above(float gap, vec3 direction) {
-    return gap / max(terrain_steepness * length(direction.xy) - direction.z, 1e-4);
+// A step that cannot pass through the canopy's envelope, from a gap above it. Two bounds hold, so the longer serves:
+// the ground is nowhere steeper than S (Lipschitz), and its slope changes by at most kappa a metre and a cell's worth at once, so
+// that over s metres the gap shrinks by at most rate s + kappa s^2 / 2. The second closes in on a smooth slope quadratically.
+// Symbols: ground height and slopes (world.glsl), S terrain_steepness, kappa terrain_bend.
+float step_above(float gap, vec3 direction, vec3 ground) {
+    float run = length(direction.xy);
+    float kappa = terrain_bend * run * run;
+    float rate = dot(ground.yz, direction.xy) - direction.z + terrain_bend * terrain_cell * run;
+    float bent = 2.0 * gap / max(rate + sqrt(rate * rate + 2.0 * kappa * gap), 1e-3);
+    return max(gap / max(terrain_steepness * run - direction.z, 1e-4), bent);
 }
 
 // Voxels that a ray crosses per metre, at most, along any axis of the sheared lattice.
@@ -17,10 +24,11 @@ float canopy_entry(vec3 origin, vec3 direction, float t) {
     float found = t < 0.0 ? -1.0 : 0.0;
     for (int i = 0; i < ENTRY_STEPS && found == 0.0; i++) {
         vec3 p = origin + t * direction;
-        float gap = p.z - ground_height(p.xy) - canopy_top;
+        vec3 ground = ground_at(p.xy);
+        float gap = p.z - ground.x - canopy_top;
         bool past = t > scene_reach || (p.z > scene_top && direction.z >= 0.0);
         found = past ? -1.0 : gap <= 0.1 ? 1.0 : 0.0;
-        t += found == 0.0 ? max(step_above(gap, direction), 0.1) : 0.0;
+        t += found == 0.0 ? max(step_above(gap, direction, ground), 0.1) : 0.0;
     }
     return found < 0.0 ? -1.0 : t;
 }

@@ -3,13 +3,9 @@
 
 vec4 forest_radiance(vec3 origin, vec3 direction, float start, vec4 jitter) {
     float t = canopy_entry(origin, direction, start);
-    Events events = no_events(jitter.y);
-    if (t >= 0.0) geometry_trace(origin, direction, t, jitter, events);
-    vec3 radiance = vec3(0.0);
-    for (int k = 0; k < LIGHT_EVENTS; k++) {
-        float reached = events.place[k].w == NOTHING ? 0.0 : 1.0 / float(LIGHT_EVENTS);
-        float level = level_at(dot(events.place[k].xyz - origin, direction), jitter.z);
-        radiance += reached * outgoing(events.place[k], events.voxel[k], level);
-    }
-    return vec4(radiance, events.opacity);
+    Event event = no_event(jitter.y);
+    if (t >= 0.0) geometry_trace(origin, direction, t, jitter, event);
+    float reached = event.place.w == NOTHING ? 0.0 : 1.0;
+    float level = level_at(dot(event.place.xyz - origin, direction), jitter.z);
+    return vec4(reached * outgoing(event.place, event.voxel, level), event.opacity);
 }

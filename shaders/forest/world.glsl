@@ -8,15 +8,21 @@ vec2 terrain_coordinate(vec2 xy) {
     return xy / (terrain_cell * terrain_nodes) + 0.5;
 }
 
-// Bilinear height: one texel holds its cell's four coefficients (value at the south-west node, east, north, and both) as shares of
-// terrain_range.x and, either way from one half, of terrain_range.y.
-float ground_height(vec2 xy) {
-    vec2 place = clamp(xy / terrain_cell + 0.5 * (terrain_nodes - 1.0), 0.0, terrain_nodes - 1.001);
-    vec2 corner = floor(place);
-    vec2 f = place - corner;
+// Bilinear ground: height [m] and slopes to the east and the north. One texel holds its cell's four coefficients (value at the
+// south-west node, east, north, and both) as shares of terrain_range.x and, either way from one half, of terrain_range.y.
+vec3 ground_at(vec2 xy) {
+    vec2 place = xy / terrain_cell + 0.5 * (terrain_nodes - 1.0);
+    vec2 held = clamp(place, 0.0, terrain_nodes - 1.001);
+    vec2 corner = floor(held);
+    vec2 f = held - corner;
     vec4 cell = textureLod(heights, (corner + 0.5) / terrain_nodes, 0.0);
-    vec3 rise = cell.yzw - 32768.0 / 65535.0;
-    return cell.x * terrain_range.x + (f.x * rise.x + f.y * (rise.y + f.x * rise.z)) * 2.0 * terrain_range.y;
+    vec3 rise = (cell.yzw - 32768.0 / 65535.0) * 2.0 * terrain_range.y;
+    vec2 slope = (rise.xy + f.yx * rise.z) / terrain_cell;
+    return vec3(cell.x * terrain_range.x + dot(f, rise.xy) + f.x * f.y * rise.z, held == place ? slope : vec2(0.0));
+}
+
+float ground_height(vec2 xy) {
+    return ground_at(xy).x;
 }
 
 vec3 ground_normal(vec2 xy) {

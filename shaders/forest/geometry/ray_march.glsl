@@ -1,14 +1,14 @@
 // Ray marching of the canopy layer, front to back, with early stop and empty-space skipping.
 // Levoy 1990 (early stop, empty space); formulas (g). Today's way beside the thesis' slices.
 // Symbols: alpha opacity for one voxel of the level; ds step [m]; T transmittance.
-// Deviations: the step grows with the mip level; light is evaluated at a few levels of opacity (events.glsl), not at every step;
+// Deviations: the step grows with the mip level; light is evaluated at one random level of opacity (events.glsl), not at every step;
 // each ray reads nearest voxels at its own offset, whose mean over rays is trilinear interpolation.
 
 // A voxel's foot and another's are both within 8 m along each axis: nothing stands nearer than the next stand less that, and a texel.
 const float GLADE_REACH = 28.0;
 
 // Formulas g: front to back, T *= 1 - alpha'; alpha' = 1 - (1 - alpha)^step, a step being that share of a voxel.
-void geometry_trace(vec3 origin, vec3 direction, float t, vec4 jitter, inout Events events) {
+void geometry_trace(vec3 origin, vec3 direction, float t, vec4 jitter, inout Event event) {
     float rate = voxel_rate(direction);
     vec3 offset = voxel_offset(jitter);
     float previous = t;
@@ -19,7 +19,8 @@ void geometry_trace(vec3 origin, vec3 direction, float t, vec4 jitter, inout Eve
         float scale = exp2(level);
         float ds = geometry_step * voxel_size * scale;
         vec3 p = origin + t * direction;
-        float above = p.z - ground_height(p.xy);
+        vec3 ground = ground_at(p.xy);
+        float above = p.z - ground.x;
         float gap = above - canopy_top;
         bool over = gap > 0.0;
         float h = clamp(above / canopy_height, 0.0, 1.0);
@@ -28,20 +29,20 @@ void geometry_trace(vec3 origin, vec3 direction, float t, vec4 jitter, inout Eve
         found = above <= 0.0 ? 2 : gone ? 0 : 1;
         vec2 stand = cover_at(foot_of(p.xy, voxel));
         float alpha = found == 1 && !over ? (1.0 - pow(1.0 - opacity_of(voxel), geometry_step)) * stand.x : 0.0;
-        float opacity = 1.0 - (1.0 - events.opacity) * (1.0 - alpha);
+        float opacity = 1.0 - (1.0 - event.opacity) * (1.0 - alpha);
         if (opacity > 1.0 - geometry_stop) {
             opacity = 1.0;
             found = 0;
         }
-        add_event(events, vec4(p, h), voxel, opacity);
+        add_matter(event, vec4(p, h), voxel, opacity);
         if (found == 1) {
             previous = t;
             float skip = max((free_voxels(voxel) - 1.0) * scale / rate, stand.y - GLADE_REACH);
-            t += over ? max(step_above(gap, direction), 0.5 * ds) : max(ds, skip);
+            t += over ? max(step_above(gap, direction, ground), 0.5 * ds) : max(ds, skip);
         }
     }
     if (found == 2) {
         float hit = ground_crossing(origin, direction, previous, t);
-        add_event(events, vec4(origin + hit * direction, GROUND), vec4(0.0), 1.0);
+        add_matter(event, vec4(origin + hit * direction, GROUND), vec4(0.0), 1.0);
     }
 }

@@ -12,7 +12,7 @@ float to_next_sheet(float above, float climb, float spacing, out float sheet) {
 }
 
 // Formulas b2: alpha' = 1 - (1 - alpha)^(d' / voxel).
-void geometry_trace(vec3 origin, vec3 direction, float t, vec4 jitter, inout Events events) {
+void geometry_trace(vec3 origin, vec3 direction, float t, vec4 jitter, inout Event event) {
     float spacing = canopy_height / float(geometry_count);
     float longest = 2.0 * spacing;
     vec3 offset = voxel_offset(jitter) * vec3(1.0, 1.0, 0.0);
@@ -20,7 +20,8 @@ void geometry_trace(vec3 origin, vec3 direction, float t, vec4 jitter, inout Eve
     int found = 1;
     for (int i = 0; i < MARCH_STEPS && found == 1; i++) {
         vec3 p = origin + t * direction;
-        float above = p.z - ground_height(p.xy);
+        vec3 ground = ground_at(p.xy);
+        float above = p.z - ground.x;
         float gap = above - canopy_top;
         vec3 ahead = p + 0.25 * direction;
         float climb = (ahead.z - ground_height(ahead.xy) - above) * 4.0;
@@ -37,19 +38,19 @@ void geometry_trace(vec3 origin, vec3 direction, float t, vec4 jitter, inout Eve
         float voxels = min(spacing / max(abs(climb), 0.02), 8.0 * spacing) / (voxel_size * exp2(level));
         float path = geometry_correct_opacity ? voxels : 1.0;
         float alpha = meets && found == 1 ? (1.0 - pow(1.0 - opacity_of(voxel), path)) * covered(foot_of(q.xy, voxel)) : 0.0;
-        float opacity = 1.0 - (1.0 - events.opacity) * (1.0 - alpha);
+        float opacity = 1.0 - (1.0 - event.opacity) * (1.0 - alpha);
         if (opacity > 0.98) {
             opacity = 1.0;
             found = 0;
         }
-        add_event(events, vec4(q, h), voxel, opacity);
+        add_matter(event, vec4(q, h), voxel, opacity);
         if (found == 1) {
             previous = t;
-            t = meets ? hit : over ? t + max(step_above(gap, direction), 0.01) : t + min(max(reach, 0.02), longest);
+            t = meets ? hit : over ? t + max(step_above(gap, direction, ground), 0.01) : t + min(max(reach, 0.02), longest);
         }
     }
     if (found == 2) {
         float hit = ground_crossing(origin, direction, previous, t);
-        add_event(events, vec4(origin + hit * direction, GROUND), vec4(0.0), 1.0);
+        add_matter(event, vec4(origin + hit * direction, GROUND), vec4(0.0), 1.0);
     }
 }

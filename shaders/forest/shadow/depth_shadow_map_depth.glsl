@@ -16,13 +16,14 @@ vec4 shadow_depth_texel(vec2 pixel) {
     float rate = voxel_rate(direction);
     for (int i = 0; i < MARCH_STEPS; i++) {
         vec3 p = origin + t * direction;
-        float above = p.z - ground_height(p.xy);
+        vec3 ground = ground_at(p.xy);
+        float above = p.z - ground.x;
         if (above <= 0.0) return vec4(ground_crossing(origin, direction, previous, t));
         previous = t;
         float gap = above - canopy_top;
         if (gap > 0.0) {
             if (t > scene_reach + length(origin - shadow_corner)) break;
-            t += max(step_above(gap, direction), 0.5 * voxel_size);
+            t += max(step_above(gap, direction, ground), 0.5 * voxel_size);
             continue;
         }
         float h = above / canopy_height;
