@@ -33,6 +33,8 @@ uniform sampler3D pattern_voxels;
 uniform sampler3D pattern_normal;
 uniform sampler2D tiles;
 uniform sampler2D scout;          // m: where the rays of a block of pixels begin, row 0 the top
+uniform sampler2D traced_place;   // m and normalised height: where the rays of a sample look at the light
+uniform sampler2D traced_voxel;   // what stands there, and the ray's opacity
 uniform vec2 terrain_range;       // m
 uniform float terrain_cell;       // m
 uniform float terrain_nodes;
@@ -54,22 +56,46 @@ uniform vec2 picture_size;
 uniform vec2 pixel_offset;        // of the sample within its pixel, from the top-left corner
 uniform float sample_shift;       // [0, 1), turns the jitter from sample to sample"""
 
-FRAME_BODY = """// R4, the low-discrepancy sequence of Roberts 2018.
+RAY_OF_PIXEL = """// R4, the low-discrepancy sequence of Roberts 2018.
 const vec4 JITTER_TURNS = vec4(0.8566748838545029, 0.7338918566271260, 0.6287067210378087, 0.5385972572236101);
-layout(location = 0) out vec4 radiance;
-void main() {
-    vec2 corner = picture_pixel(gl_FragCoord.xy, picture_size) - 0.5;
-    vec3 origin, direction;
+vec4 pixel_ray(out vec2 corner, out vec3 origin, out vec3 direction) {
+    corner = picture_pixel(gl_FragCoord.xy, picture_size) - 0.5;
     camera_ray(corner + pixel_offset, origin, direction);
     float noise = fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715))));
-    vec4 jitter = fract(noise * vec4(1.0, 7.0, 13.0, 29.0) + vec4(0.0, 0.5, 0.25, 0.75) + sample_shift * JITTER_TURNS);
+    return fract(noise * vec4(1.0, 7.0, 13.0, 29.0) + vec4(0.0, 0.5, 0.25, 0.75) + sample_shift * JITTER_TURNS);
+}
+"""
+
+TRACE_BODY = """layout(location = 0) out vec4 place_found;
+layout(location = 1) out vec4 voxel_found;
+void main() {
+    vec2 corner;
+    vec3 origin, direction;
+    vec4 jitter = pixel_ray(corner, origin, direction);
     float start = textureLod(scout, (floor((corner + 0.5) / SCOUT_BLOCK) + 0.5) / vec2(textureSize(scout, 0)), 0.0).r;
-    radiance = forest_radiance(origin, direction, start, jitter);
+    Event event = forest_trace(origin, direction, start, jitter);
+    place_found = event.place;
+    voxel_found = vec4(event.voxel.xyz / 65535.0, event.opacity);
+}"""
+
+SHADE_BODY = """layout(location = 0) out vec4 radiance;
+void main() {
+    vec2 corner;
+    vec3 origin, direction;
+    vec4 jitter = pixel_ray(corner, origin, direction);
+    vec4 place = texelFetch(traced_place, ivec2(gl_FragCoord.xy), 0);
+    vec4 voxel = texelFetch(traced_voxel, ivec2(gl_FragCoord.xy), 0);
+    float level = level_at(dot(place.xyz - origin, direction), jitter.z);
+    float reached = place.w == NOTHING ? 0.0 : 1.0;
+    radiance = vec4(reached * outgoing(place, vec4(voxel.xyz * 65535.0, 0.0), level), voxel.w);
 #if BACKGROUND_SKY == 1
     radiance.rgb += (1.0 - radiance.a) * (sky_radiance(direction) + sky_sun_disc(direction));
     radiance.a = 1.0;
 #endif
 }"""
+
+TRACE_SLOTS = ("geometry", "filter")
+"""Slots that decide where a ray meets matter; the others decide what light leaves there."""
 
 SCOUT_BODY = """layout(location = 0) out vec4 distance_found;
 void main() {
@@ -82,29 +108,40 @@ void main() {
 }"""
 
 
-def frame_source(state: ForestState) -> Source:
-    """The fragment stage of a frame."""
-    chosen = tuple((slot, type(t), tuple(defines(t, slot).items())) for slot, t in state.techniques().items())
-    return _frame(chosen, state.view.background == "sky")
-
-
 Chosen = tuple[tuple[str, type["ForestTechnique"], tuple[tuple[str, str], ...]], ...]
 
 
+def trace_source(state: ForestState) -> Source:
+    """The fragment stage that finds where each ray looks at the light, and what stands there; no sun is in it."""
+    return _composed(_chosen(state, TRACE_SLOTS), ("forest/crossing.glsl",), ("forest/trace.glsl",), TRACE_BODY, True)
+
+
+def shade_source(state: ForestState) -> Source:
+    """The fragment stage that lights what was traced."""
+    slots = tuple(slot for slot in state.techniques() if slot != "geometry")
+    body = SHADE_BODY
+    sky = state.view.background == "sky"
+    return _composed(_chosen(state, slots), (), ("forest/shade.glsl",), body, sky)
+
+
+def _chosen(state: ForestState, slots: tuple[str, ...]) -> Chosen:
+    """Techniques by slot with their build parameters: live ones move without a new program."""
+    chosen = state.techniques()
+    return tuple((slot, type(chosen[slot]), tuple(defines(chosen[slot], slot).items())) for slot in slots)
+
+
 @functools.lru_cache(maxsize=256)
-def _frame(chosen: Chosen, sky: bool) -> Source:
-    """Composed for techniques and their build parameters: live ones move without a new program."""
-    files = ["lib/pixel.glsl", "lib/camera.glsl", "lib/sky.glsl"]
-    files += ["forest/world.glsl", "forest/crossing.glsl", "forest/events.glsl"]
+def _composed(chosen: Chosen, before: tuple[str, ...], after: tuple[str, ...], body: str, sky: bool) -> Source:
+    files = ["lib/pixel.glsl", "lib/camera.glsl", "lib/sky.glsl", "forest/world.glsl", "forest/events.glsl", *before]
     files += [glsl_file("forest", slot, technique.model_fields["kind"].default) for slot, technique, _ in chosen]
-    files += ["forest/shade.glsl", "forest/radiance.glsl"]
+    files += after
     declarations = [CAMERA_DECLARATIONS, SKY_DECLARATIONS, WORLD_DECLARATIONS, uniform_declarations(Ground, "ground")]
     macros = _limits() | {"BACKGROUND_SKY": int(sky)}
     for slot, technique, build in chosen:
         declarations += [f"uniform {kind} {slot}_{name};" for name, kind in technique.textures.items()]
         declarations += [uniform_declarations(technique, slot), *technique.extra_declarations]
         macros.update(build)
-    return assemble(files, defines=macros, declarations="\n".join(declarations), body=FRAME_BODY)
+    return assemble(files, defines=macros, declarations="\n".join(declarations), body=RAY_OF_PIXEL + body)
 
 
 @functools.lru_cache(maxsize=64)

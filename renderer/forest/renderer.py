@@ -10,10 +10,11 @@ import numpy as np
 
 from renderer.core.params import uniforms
 from renderer.core.technique import BakedArrays
-from renderer.forest.program import SCOUT_BLOCK, frame_source, pass_source, scout_source
+from renderer.forest.program import SCOUT_BLOCK, TRACE_SLOTS, pass_source, scout_source, shade_source, trace_source
 from renderer.forest.textures import bilinear_cells, ground_textures, pattern_textures, tile_map
 from renderer.forest.world_scale import CANOPY_HEIGHT, CELL, NODES, REACH, TILE_SIDE, VOXEL
 from renderer.gl.context import GL
+from renderer.gl.layers import Layers, LayerStore
 from renderer.gl.program import AnyTexture
 from renderer.gl.resident import Resident
 from renderer.gl.source import Source
@@ -27,6 +28,9 @@ if TYPE_CHECKING:
 
 Baked = Mapping[str, BakedArrays]
 
+TRACES_KEPT = 192 << 20
+"""Bytes of traced samples kept: thirty of 512 x 512, so that a moved sun only lights them again."""
+
 
 class ForestRenderer:
     """Textures of what was baked, and the frames drawn with them; one serves every view of the process."""
@@ -35,6 +39,7 @@ class ForestRenderer:
         self._gl = gl
         self._baked = Resident(gl, 6)
         self._moment = Resident(gl, 24)
+        self._traces = LayerStore(gl, ("f4", "nu2"), TRACES_KEPT)
         self._bounds: dict[tuple[str, str], dict[str, Any]] = {}
 
     def draw(
@@ -50,19 +55,21 @@ class ForestRenderer:
         """
         values = self._world(state, baked)
         textures: dict[str, AnyTexture] = self._world_textures(state, baked)
-        values |= camera_uniforms(state.camera, *size) | self._pixel(state, size)
-        textures["scout"] = self._scout(state, baked, size, values, textures)
-        values |= self._shadow_pass(state, baked, size, values, textures)
-        self._technique_textures(state, baked, textures)
         for slot, technique in state.techniques().items():
             values |= uniforms(technique, slot) | technique.constants()
+        values |= camera_uniforms(state.camera, *size) | self._pixel(state, size)
         values |= {"picture_size": size, "pixel_offset": offset, "sample_shift": float(sample)}
-        run_fullscreen(self._gl, frame_source(state), textures | self._sky(state, baked), values)
+        textures["scout"] = self._scout(state, baked, size, values, textures)
+        traced = self._traced(state, baked, (size, offset, sample), values, textures)
+        values |= self._shadow_pass(state, baked, size, values, textures)
+        self._technique_textures(state, baked, textures)
+        run_fullscreen(self._gl, shade_source(state), {**textures, **self._sky(state, baked), **traced}, values)
 
     def release(self) -> None:
         """Free every texture."""
         self._baked.release()
         self._moment.release()
+        self._traces.release()
 
     def bytes_held(self, baked: Baked) -> int:
         """Bytes of the arrays behind a frame's textures."""
@@ -182,6 +189,34 @@ class ForestRenderer:
         made = self._moment.get(("scout", state.camera, size, baked["terrain"].key), draw)["target"]
         assert isinstance(made, Target)
         return made.texture
+
+    def _traced(
+        self,
+        state: ForestState,
+        baked: Baked,
+        sample: tuple[tuple[int, int], tuple[float, float], int],
+        values: dict[str, Any],
+        textures: dict[str, AnyTexture],
+    ) -> dict[str, AnyTexture]:
+        """Where the rays of a sample look at the light; the same for every sun, so kept while only the sun moves."""
+        chosen = state.techniques()
+        key = (
+            state.camera,
+            sample,
+            state.ground.map_seed,
+            tuple(chosen[slot] for slot in TRACE_SLOTS),
+            baked["terrain"].key,
+            baked["pattern"].key,
+        )
+
+        def draw(layers: Layers) -> None:
+            bound = self._gl.ctx.fbo
+            layers.use()
+            run_fullscreen(self._gl, trace_source(state), textures, values)
+            bound.use()
+
+        place, voxel = self._traces.get(key, sample[0], draw)
+        return {"traced_place": place, "traced_voxel": voxel}
 
     def _draw_into(
         self, target: Target, source: Source, values: dict[str, Any], textures: dict[str, AnyTexture]

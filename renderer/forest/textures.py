@@ -36,7 +36,8 @@ def bilinear_cells(elevation: np.ndarray) -> tuple[np.ndarray, tuple[float, floa
     here, east, north, both = padded[:-1, :-1], padded[:-1, 1:], padded[1:, :-1], padded[1:, 1:]
     rises = np.stack([east - here, north - here, here - east - north + both], axis=-1)
     relief = max(float(height.max()), 1.0)
-    # A little room: half lies above the middle of 16 bits, and the steepest rise must not come round to the deepest fall.
+    # A little room: half lies above the middle of 16 bits, and the steepest rise must not come round to the
+    # deepest fall.
     rise = max(float(np.abs(rises).max()), 1e-3) * 1.0001
     shares = np.concatenate([here[..., None] / relief, rises / (2 * rise) + HALF], axis=-1)
     return np.rint(shares * 65535).astype(np.uint16), (relief, rise)

@@ -1,0 +1,93 @@
+"""Several textures of one size drawn at once, kept while they are asked for."""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+from collections.abc import Callable, Hashable, Sequence
+
+import moderngl
+
+from renderer.gl.context import GL
+
+
+class Layers:
+    """A framebuffer with several textures.
+
+    Args:
+        gl: the context's objects.
+        width, height: size in pixels.
+        dtypes: moderngl's name of each texture's component type; each has four components.
+    """
+
+    def __init__(self, gl: GL, width: int, height: int, dtypes: Sequence[str]) -> None:
+        self.size = (width, height)
+        self.textures = [gl.ctx.texture((width, height), 4, dtype=dtype) for dtype in dtypes]
+        for texture in self.textures:
+            texture.filter = moderngl.NEAREST, moderngl.NEAREST
+            texture.repeat_x = texture.repeat_y = False
+        self._framebuffer = gl.ctx.framebuffer(self.textures)
+
+    def use(self) -> None:
+        """Draw into them from now on, cleared: what is drawn replaces or adds alike."""
+        self._framebuffer.use()
+        self._framebuffer.clear(0.0, 0.0, 0.0, 0.0)
+
+    def release(self) -> None:
+        """Free them."""
+        self._framebuffer.release()
+        for texture in self.textures:
+            texture.release()
+
+
+class LayerStore:
+    """Drawn layers by what they show; those of the longest unasked key are drawn over.
+
+    Args:
+        gl: the context's objects.
+        dtypes: as in `Layers`.
+        bytes_kept: size of all layers together; one picture is kept whatever its size.
+    """
+
+    def __init__(self, gl: GL, dtypes: Sequence[str], bytes_kept: int) -> None:
+        self._gl = gl
+        self._dtypes = tuple(dtypes)
+        self._bytes_kept = bytes_kept
+        self._held: OrderedDict[Hashable, Layers] = OrderedDict()
+
+    def get(self, key: Hashable, size: tuple[int, int], draw: Callable[[Layers], None]) -> list[moderngl.Texture]:
+        """The textures of `key` at a size, drawn by `draw` unless they are still there."""
+        whole = (key, size)
+        if whole not in self._held:
+            layers = self._room(size)
+            try:
+                draw(layers)
+            except BaseException:
+                layers.release()
+                raise
+            self._held[whole] = layers
+        self._held.move_to_end(whole)
+        return self._held[whole].textures
+
+    def release(self) -> None:
+        """Free everything."""
+        while self._held:
+            self._held.popitem()[1].release()
+
+    def _room(self, size: tuple[int, int]) -> Layers:
+        """Layers of a size: old ones, when keeping all would be too much."""
+        spare: Layers | None = None
+        while self._held and self._bytes() + self._bytes_of(size) > self._bytes_kept:
+            if spare is not None:
+                spare.release()
+            spare = self._held.popitem(last=False)[1]
+        if spare is not None and spare.size == size:
+            return spare
+        if spare is not None:
+            spare.release()
+        return Layers(self._gl, *size, self._dtypes)
+
+    def _bytes(self) -> int:
+        return sum(self._bytes_of(layers.size) for layers in self._held.values())
+
+    def _bytes_of(self, size: tuple[int, int]) -> int:
+        return size[0] * size[1] * sum(4 * {"f1": 1, "nu2": 2, "f2": 2, "f4": 4}[dtype] for dtype in self._dtypes)
