@@ -108,14 +108,15 @@ def time_frames(
 ) -> list[dict[str, Any]]:
     """Time every technique at every preset, and every shadow technique while the sun and the camera move.
 
-    Techniques are timed in turns within a preset: ratios between them come from one run.
+    Techniques are timed in turns within a preset: ratios between them come from one run. Large pictures of all but the
+    first preset are timed a third as often.
 
     Args:
         session: draws.
         scene: its name.
         results: JSON lines to add to.
         machine: where it runs.
-        frames: timed frames of each.
+        frames: timed frames of each, as far as stated.
         presets: all where none is named.
         progress: told the share done.
     """
@@ -127,6 +128,7 @@ def time_frames(
         for column, size in enumerate(SIZES):
             watch = Stopwatch(session, scene, size)
             done = number + column / len(SIZES)
+            often = frames if column == 0 or groups[number][0].preset == names[0] else max(1, frames // 3)
 
             def tell(share: float, words: str, done: float = done) -> None:
                 if progress is not None:
@@ -134,7 +136,7 @@ def time_frames(
 
             try:
                 found += clock(
-                    results, cases, watch.frame_ms, size, machine, lambda: session.gl.call(stick.draw_ms), frames, tell
+                    results, cases, watch.frame_ms, size, machine, lambda: session.gl.call(stick.draw_ms), often, tell
                 )
             finally:
                 watch.close()

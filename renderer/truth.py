@@ -26,7 +26,7 @@ from renderer.world.state import SceneState
 POSITIONS = 16
 """Sub-pixel positions of a reference, and of the converged picture that is compared with it."""
 
-SECONDS_PER_RAY = 60e-6
+SECONDS_PER_RAY = 160e-6
 """What a ray with its shadow rays takes on two cores, to announce the cost."""
 
 NOT_THE_WORLD = ("version", "quality", "view", "time")

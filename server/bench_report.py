@@ -60,7 +60,7 @@ def _frames(lines: Sequence[Mapping[str, Any]]) -> Iterator[str]:
     default = lines[0]["techniques"]
     rows = []
     for line in lines:
-        changed = [f"**{kind}**" for slot, kind in line["techniques"].items() if kind != default[slot]]
+        changed = [f"{slot}: **{kind}**" for slot, kind in line["techniques"].items() if kind != default[slot]]
         moves = line["parameters"]["moves"]
         rows.append(
             (
