@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from renderer import view
 from renderer.core.params import uniform_declarations, uniforms
 from renderer.core.technique import Arrays, BakedArrays
 from renderer.forest import program
@@ -20,7 +21,6 @@ from renderer.gl.context import GL
 from renderer.gl.probe import probe
 from renderer.gl.thread import GLThread
 from renderer.picture import Picture
-from renderer.view import Painter
 from tests.forest import worlds
 from tests.forest.truth import Judge
 
@@ -36,12 +36,17 @@ def thread() -> Iterator[GLThread]:
 
 
 @pytest.fixture(scope="session")
-def paint(thread: GLThread) -> Paint:
+def painter(thread: GLThread) -> view.Painter:
+    """What draws on that thread."""
+    return view.Painter(thread)
+
+
+@pytest.fixture(scope="session")
+def paint(thread: GLThread, painter: view.Painter) -> Paint:
     """Draws a state with hand-made bakes: `paint(state, baked, (width, height), samples)`."""
-    painter = Painter(thread)
 
     def painted(state: ForestState, baked: Mapping[str, BakedArrays], size: tuple[int, int], samples: int) -> Picture:
-        return thread.call(painter.picture, state, baked, size, samples)
+        return view.paint(thread, painter, state, baked, size, samples)
 
     return painted
 
@@ -132,6 +137,6 @@ def spoil(monkeypatch: pytest.MonkeyPatch) -> Spoil:
 
 
 @pytest.fixture(scope="session")
-def judge(thread: GLThread, paint: Paint, pytestconfig: pytest.Config) -> Judge:
+def judge(thread: GLThread, painter: view.Painter, pytestconfig: pytest.Config) -> Judge:
     """Holds techniques to the reference and to frozen pictures."""
-    return Judge(thread, paint, pytestconfig.getoption("--regenerate"))
+    return Judge(thread, painter, pytestconfig.getoption("--regenerate"))

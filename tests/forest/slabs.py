@@ -13,6 +13,7 @@ from renderer.forest.world_scale import CANOPY_HEIGHT, NODES, VOXEL
 from tests.forest import worlds
 
 ALPHA = 12
+HALF = 100.0
 RAYS = 2048
 NOISE = 2.0 / RAYS + 1e-3
 """Of a share counted over stratified rays: two strata, and a thousandth for float32."""
@@ -33,9 +34,9 @@ def strata() -> tuple[np.ndarray, np.ndarray]:
 
 
 def plane(slope: float) -> dict[str, np.ndarray]:
-    """Wooded ground that rises `slope` metres a metre to the east, lowest at 0."""
-    z = np.arange(NODES)[None, :] * 8.0 * slope
-    return worlds.ground(z - z.min())
+    """Wooded ground that rises `slope` metres a metre to the east around the middle, and is level beyond `HALF`."""
+    x = np.clip((np.arange(NODES) - (NODES - 1) / 2) * 8.0, -HALF, HALF)[None, :]
+    return worlds.ground(x * slope + HALF * abs(slope))
 
 
 def trace(
@@ -56,8 +57,7 @@ def slab_error(
 ) -> float:
     """Error of the transmittance from the canopy's top to the ground, against (1 - alpha)^(path / voxel)."""
     d = np.asarray(direction, float) / np.linalg.norm(direction)
-    half = 8.0 * (NODES - 1) / 2
     path = CANOPY_HEIGHT / (slope * d[0] - d[2])
     exact = (1 - ALPHA / 255) ** (path / VOXEL)
-    found = trace(ask, technique, (0.0, 3.0, abs(slope) * half + CANOPY_HEIGHT), d, worlds.uniform(ALPHA), plane(slope))
+    found = trace(ask, technique, (0.0, 3.0, abs(slope) * HALF + CANOPY_HEIGHT), d, worlds.uniform(ALPHA), plane(slope))
     return abs(float(found[:, 0].mean()) - exact)

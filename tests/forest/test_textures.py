@@ -121,7 +121,7 @@ def test_the_next_stand_is_never_nearer_than_said() -> None:
 
 def test_the_patch_of_tiles_holds_the_square() -> None:
     """The corners' lattice coordinates are at most (1 / side) (x + y / sqrt 3) from the middle."""
-    assert TILE_MAP / 2 > HALF / TILE_SIDE * (1 + 1 / np.sqrt(3))
+    assert HALF / TILE_SIDE * (1 + 1 / np.sqrt(3)) < TILE_MAP / 2
 
 
 def tile_error(ask: Ask, seed: int = 0) -> float:

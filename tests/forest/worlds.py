@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import inspect
-import sys
 import zlib
 from collections.abc import Callable
 from typing import Any
@@ -12,6 +11,7 @@ import numpy as np
 
 from renderer.core.cache import key_of
 from renderer.core.params import merge, validate
+from renderer.core.registry import techniques
 from renderer.core.technique import Arrays, Bake, BakedArrays
 from renderer.forest.pattern_mips import mips
 from renderer.forest.state import ForestState
@@ -92,22 +92,25 @@ def map_view(x: float, y: float, width: float) -> dict[str, Any]:
     return {"kind": "orthographic", "centre": [x, y, 0.0], "direction": [0, 0, -1], "up": [0, 1, 0], "width": width}
 
 
+def technique(slot: str, kind: str, **parameters: Any) -> dict[str, Any]:
+    """A technique's whole document: its own defaults, whatever the scene's are."""
+    return techniques("forest", slot)[kind](kind=kind, **parameters).model_dump(mode="json")
+
+
 PLAIN = {
-    "geometry": {"kind": "ray_march"}, "shadow": {"kind": "none"}, "height_shading": {"kind": "none"},
-    "light": {"kind": "lambert"}, "sky": {"kind": "ambient"}, "filter": {"kind": "none"},
+    slot: technique(slot, kind)
+    for slot, kind in {"geometry": "ray_march", "shadow": "none", "height_shading": "none", "light": "lambert",
+                       "sky": "ambient", "filter": "none"}.items()
 }
 """Techniques that add nothing of their own; a test puts the one it is about in its slot."""
 
 
 def with_technique(slot: str, kind: str, **parameters: Any) -> dict[str, Any]:
     """`PLAIN` with one technique in its place."""
-    return {**PLAIN, slot: {"kind": kind, **parameters}}
+    return {**PLAIN, slot: technique(slot, kind, **parameters)}
 
 
 # A grove: round crowns on two hills, beside a glade. It is what techniques are held to the reference on.
-
-VERSION = zlib.crc32(inspect.getsource(sys.modules[__name__]).encode())
-
 
 def grove_ground(arguments: dict[str, Any], inputs: dict[str, Arrays], progress: Progress) -> Arrays:
     """Two low hills, and a square glade whose edge falls on borders of the map of trees, so that it costs nothing."""
@@ -120,17 +123,17 @@ def grove_ground(arguments: dict[str, Any], inputs: dict[str, Arrays], progress:
 
 
 def grove_pattern(arguments: dict[str, Any], inputs: dict[str, Arrays], progress: Progress) -> Arrays:
-    """Ellipsoidal crowns on trunks, four to a triangle, none across an edge."""
+    """Ellipsoidal crowns on trunks, six to a triangle, none across an edge."""
     rng = np.random.default_rng(5)
     colour, normal, anchor = (np.zeros((LAYERS, SIZE, SIZE, 4), np.uint8) for _ in range(3))
     normal[...], anchor[...] = (*UP, 150), (128, 128, 0, 0)
     height = ((np.arange(LAYERS) + 0.5) * VOXEL)[:, None, None]
-    for p, q, n in np.ndindex(4, 4, 8):
+    for p, q, n in np.ndindex(4, 4, 12):
         # Places in the upward triangle; its mirror image in the downward one.
-        u, v = [(0.2, 0.2), (0.2, 0.6), (0.6, 0.2), (0.34, 0.34)][n % 4]
-        u, v = (u, v) if n < 4 else (1 - u, 1 - v)
+        u, v = [(0.16, 0.16), (0.16, 0.4), (0.16, 0.66), (0.4, 0.16), (0.4, 0.4), (0.66, 0.16)][n % 6]
+        u, v = (u, v) if n < 6 else (1 - u, 1 - v)
         foot = (np.array([p + u, q + v]) + rng.uniform(-0.02, 0.02, 2)) * SIZE / 4
-        top, radius, shade = rng.uniform(11, 17), rng.uniform(3.0, 4.6), rng.uniform(0.05, 0.2)
+        top, radius, shade = rng.uniform(11, 17), rng.uniform(3.4, 4.8), rng.uniform(0.05, 0.2)
         i, j = (np.arange(int(foot[axis]) - 9, int(foot[axis]) + 11) for axis in (0, 1))
         du, dv = (i[None, None, :] + 0.5 - foot[0]) * VOXEL, (j[None, :, None] + 0.5 - foot[1]) * VOXEL
         x, y = du + 0.5 * dv + 0 * height, np.sqrt(0.75) * dv + 0 * height + 0 * du
@@ -154,6 +157,9 @@ def grove_pattern(arguments: dict[str, Any], inputs: dict[str, Arrays], progress
     coarser = {f"{name}_{n}": array for n, given in enumerate(mips(level), 1) for name, array in given.items()}
     return {**level, **coarser, "tile": tile_table(), "trees": np.zeros((0, 6), np.float32)}
 
+
+VERSION = zlib.crc32("".join(map(inspect.getsource, (grove_ground, grove_pattern))).encode())
+"""Of the grove: its bakes and its references are made anew when it changes."""
 
 GROVE_GROUND = Bake("terrain", grove_ground, {}, version=VERSION)
 GROVE_PATTERN = Bake("pattern", grove_pattern, {}, version=VERSION)

@@ -11,7 +11,7 @@ import pytest
 from renderer.forest.filter.mipmap import Mipmap
 from renderer.forest.world_scale import VOXEL
 from tests.forest import worlds
-from tests.forest.truth import Judge
+from tests.forest.truth import MARCH, Judge
 
 Ask = Callable[..., np.ndarray]
 WIDTHS = np.concatenate([[0.0, 1e-6], VOXEL * np.exp2(np.linspace(-3, 8, 45))])
@@ -54,7 +54,7 @@ def test_a_level_lets_through_as_much_light_as_the_finest(paint: Callable[..., A
     baked = worlds.together(sky=worlds.sky(), terrain=worlds.ground(), pattern=worlds.uniform(12, albedo=1.0))
     seen = []
     for bias in (0.0, 1.0, 2.0):
-        chosen = worlds.with_technique("filter", "mipmap", bias=bias) | {"light": {"kind": "gouraud"}}
+        chosen = worlds.with_technique("filter", "mipmap", bias=bias) | {"light": worlds.technique("light", "gouraud")}
         made = worlds.state(camera=worlds.map_view(0, 0, 10), sun=worlds.sun(0, 90), **chosen)
         seen.append(float(paint(made, baked, (32, 32), 16).linear[..., 0].mean()))
     through = (1 - 12 / 255) ** 32
@@ -63,8 +63,16 @@ def test_a_level_lets_through_as_much_light_as_the_finest(paint: Callable[..., A
 
 
 def test_distance_to_the_reference(judge: Judge) -> None:
-    """What it costs: the march, one mean normal and one tint for eight voxels, foliage spread over its level."""
-    judge.holds("filter", "mipmap", budget=0.0)
+    judge.holds(
+        "filter", "mipmap",
+        MARCH,
+        0.093,  # pixels of 1.7 m: one mean normal for eight voxels and more, foliage spread over them
+    )
+
+
+def test_coarser_levels_cost_more(judge: Judge) -> None:
+    coarse = {"filter": worlds.technique("filter", "mipmap", bias=2.0)}
+    assert judge.distance("filter", "mipmap", **coarse) > 1.1 * (MARCH + 0.093)
 
 
 def test_picture(judge: Judge) -> None:

@@ -11,7 +11,7 @@ from renderer.forest.geometry.ray_march import RayMarch
 from renderer.forest.world_scale import VOXEL
 from tests.forest import worlds
 from tests.forest.slabs import ALPHA, NOISE, slab_error, strata, trace
-from tests.forest.truth import Judge
+from tests.forest.truth import MARCH, Judge
 
 Ask = Callable[..., np.ndarray]
 DOWN = [(0, 0, -1), (0.6, 0, -0.8), (-0.5, 0.7, -0.5)]
@@ -93,8 +93,12 @@ def test_light_falls_on_the_first_matter_of_an_opaque_canopy(ask: Ask) -> None:
 
 
 def test_distance_to_the_reference(judge: Judge) -> None:
-    """What marching costs: steps of one voxel, and nearest voxels at random offsets for trilinear ones."""
-    judge.holds("geometry", "ray_march", budget=0.0)
+    judge.holds("geometry", "ray_march", MARCH)
+
+
+def test_marching_with_longer_steps_costs_more(judge: Judge) -> None:
+    longer = {"geometry": worlds.technique("geometry", "ray_march", step=4.0)}
+    assert judge.distance("geometry", "ray_march", **longer) > 1.1 * MARCH
 
 
 def test_picture(judge: Judge) -> None:

@@ -10,7 +10,7 @@ import pytest
 from renderer.forest.geometry.slices import Slices
 from tests.forest import worlds
 from tests.forest.slabs import ALPHA, NOISE, slab_error, trace
-from tests.forest.truth import Judge
+from tests.forest.truth import MARCH, Judge
 
 Ask = Callable[..., np.ndarray]
 DIRECTIONS = [(0, 0, -1), (0.6, 0, -0.8), (-0.5, 0.6, -0.5)]
@@ -58,8 +58,16 @@ def test_sheets_lie_at_the_middle_of_their_share(ask: Ask) -> None:
 
 
 def test_distance_to_the_reference(judge: Judge) -> None:
-    """What 32 sheets cost beside the march: matter between sheets is skipped, a sheet is seen for its whole share."""
-    judge.holds("geometry", "slices", budget=0.0)
+    judge.holds(
+        "geometry", "slices",
+        MARCH,
+        0.036,  # 32 sheets: matter between two of them is not met, and one stands for its whole share
+    )
+
+
+def test_uncorrected_slices_cost_more(judge: Judge) -> None:
+    plain = {"geometry": worlds.technique("geometry", "slices", correct_opacity=False)}
+    assert judge.distance("geometry", "slices", **plain) > 1.1 * (MARCH + 0.036)
 
 
 def test_picture(judge: Judge) -> None:

@@ -10,7 +10,7 @@ import pytest
 
 from renderer.forest.height_shading.empirical import Empirical
 from tests.forest import worlds
-from tests.forest.truth import Judge
+from tests.forest.truth import MARCH, Judge
 
 Ask = Callable[..., np.ndarray]
 FILE = "forest/height_shading/empirical.glsl"
@@ -63,8 +63,16 @@ def test_open_ground_is_left_alone(paint: Callable[..., Any]) -> None:
 
 
 def test_distance_to_the_reference(judge: Judge) -> None:
-    """What it costs where it stands alone for every shadow: it knows no sun, no neighbour and no open ground."""
-    judge.holds("height_shading", "empirical", budget=0.0, against="full")
+    judge.holds(
+        "height_shading", "empirical",
+        MARCH,
+        0.47,  # alone in the place of every shadow: it knows no sun, no neighbour and no open ground
+        against="full",
+    )
+
+
+def test_no_shading_at_all_is_farther_from_the_truth(judge: Judge) -> None:
+    assert judge.distance("height_shading", "none", "full") > 1.1 * (MARCH + 0.47)
 
 
 def test_picture(judge: Judge) -> None:

@@ -9,7 +9,7 @@ import pytest
 
 from renderer.forest.light.gouraud import Gouraud
 from tests.forest.facing import light_error
-from tests.forest.truth import Judge
+from tests.forest.truth import MARCH, Judge
 
 Ask = Callable[..., np.ndarray]
 
@@ -35,8 +35,15 @@ def test_a_wrong_factor_is_found(ask: Ask, spoil: Callable, right: str, wrong: s
 
 
 def test_distance_to_the_reference(judge: Judge) -> None:
-    """What it costs: the march, and crowns without a lit and a dark side."""
-    judge.holds("light", "gouraud", budget=0.0)
+    judge.holds(
+        "light", "gouraud",
+        MARCH,
+        0.40,  # crowns without a lit and a dark side
+    )
+
+
+def test_gouraud_is_told_from_the_voxels_own_light(judge: Judge) -> None:
+    assert judge.distance("light", "gouraud") > 10 * MARCH
 
 
 def test_picture(judge: Judge) -> None:

@@ -11,7 +11,7 @@ import pytest
 from renderer.forest.light.lambert import Lambert
 from tests.forest import worlds
 from tests.forest.facing import light_error
-from tests.forest.truth import Judge
+from tests.forest.truth import MARCH, Judge
 
 Ask = Callable[..., np.ndarray]
 
@@ -54,8 +54,7 @@ def test_an_opaque_canopy_reflects_its_albedo_over_pi(paint: Callable[..., Any])
 
 
 def test_distance_to_the_reference(judge: Judge) -> None:
-    """What it costs: the march; the light is the reference's own, of the nearest voxel instead of between voxels."""
-    judge.holds("light", "lambert", budget=0.0)
+    judge.holds("light", "lambert", MARCH)  # the light is the reference's own
 
 
 def test_picture(judge: Judge) -> None:

@@ -10,7 +10,7 @@ import pytest
 
 from renderer.forest.shadow.depth_shadow_map import DepthShadowMap
 from tests.forest import worlds
-from tests.forest.truth import Judge
+from tests.forest.truth import MARCH, Judge
 
 Paint = Callable[..., Any]
 Ask = Callable[..., np.ndarray]
@@ -119,8 +119,17 @@ def test_the_window_holds_what_the_camera_sees() -> None:
 
 
 def test_distance_to_the_reference(judge: Judge) -> None:
-    """What it costs: the march, matter that either blocks or does not, a bias, and texels without filter."""
-    judge.holds("shadow", "depth_shadow_map", budget=0.0, against="full")
+    judge.holds(
+        "shadow", "depth_shadow_map",
+        MARCH,
+        0.068,  # matter blocks wholly or not at all; 0.75 m of bias; texels without a filter
+        against="full",
+    )
+
+
+def test_a_wrong_threshold_costs_more(judge: Judge) -> None:
+    late = {"shadow": worlds.technique("shadow", "depth_shadow_map", threshold=0.99)}
+    assert judge.distance("shadow", "depth_shadow_map", "full", **late) > 1.1 * (MARCH + 0.068)
 
 
 def test_picture(judge: Judge) -> None:

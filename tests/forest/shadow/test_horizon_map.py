@@ -11,7 +11,7 @@ from renderer.forest.horizon_textures import at_azimuth
 from renderer.forest.shadow.horizon_map import HorizonMap
 from tests.forest import worlds
 from tests.forest.horizons import EPS, threshold_error, twin, visibility
-from tests.forest.truth import Judge
+from tests.forest.truth import MARCH, Judge
 
 Ask = Callable[..., np.ndarray]
 FILE = "forest/horizon_threshold.glsl"
@@ -93,8 +93,19 @@ def test_the_map_of_the_technique_looks_towards_the_sun() -> None:
 
 
 def test_distance_to_the_reference(judge: Judge) -> None:
-    """What it costs: the march, one angle a sector and no gaps, one height for the whole canopy, 4 wide sectors."""
-    judge.holds("shadow", "horizon_map", budget=0.0, against="full")
+    judge.holds(
+        "shadow", "horizon_map",
+        MARCH,
+        0.39,  # one angle a sector: no gaps between and under crowns, and the neighbours are the atlas' own
+        0.11,  # one height for the whole canopy
+        against="full", shadow=worlds.technique("shadow", "horizon_map", sectors=16),
+    )
+
+
+def test_a_sun_from_behind_is_found(judge: Judge) -> None:
+    """The truth of one sun rejects the shadows of the opposite one."""
+    behind = judge.distance("shadow", "depth_shadow_map", "full", sun=worlds.sun(65, 33))
+    assert behind > 1.1 * (MARCH + 0.39 + 0.11)
 
 
 def test_picture(judge: Judge) -> None:

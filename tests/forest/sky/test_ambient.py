@@ -10,7 +10,7 @@ import pytest
 
 from renderer.forest.sky.ambient import Ambient
 from tests.forest import worlds
-from tests.forest.truth import Judge
+from tests.forest.truth import MARCH, Judge
 
 Ask = Callable[..., np.ndarray]
 SHARES = np.linspace(0, 1, 9)
@@ -45,8 +45,7 @@ def test_a_furnace_is_even(paint: Callable[..., Any]) -> None:
 
 
 def test_distance_to_the_reference(judge: Judge) -> None:
-    """What it costs: the march; the share is the reference's own, of the nearest voxel."""
-    judge.holds("sky", "ambient", budget=0.0)
+    judge.holds("sky", "ambient", MARCH)  # the share is the reference's own
 
 
 def test_picture(judge: Judge) -> None:

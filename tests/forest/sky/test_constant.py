@@ -9,7 +9,7 @@ import pytest
 
 from renderer.forest.sky.constant import ConstantSky
 from tests.forest import worlds
-from tests.forest.truth import Judge
+from tests.forest.truth import MARCH, Judge
 
 Ask = Callable[..., np.ndarray]
 SHARES = np.linspace(0, 1, 9)
@@ -37,8 +37,16 @@ def test_a_wrong_sky_is_found(ask: Ask, spoil: Callable, wrong: str) -> None:
 
 
 def test_distance_to_the_reference(judge: Judge) -> None:
-    """What it costs: the march, and a light that knows neither the sky nor what stands in its way."""
-    judge.holds("sky", "constant", budget=0.0)
+    judge.holds(
+        "sky", "constant",
+        MARCH,
+        0.175,  # a light that knows neither the sky's colour nor what stands in its way
+    )
+
+
+def test_a_sky_pi_times_too_bright_is_found(judge: Judge) -> None:
+    bright = {"sky": worlds.technique("sky", "constant", share=0.3 * 3.14159)}
+    assert judge.distance("sky", "constant", **bright) > 1.1 * (MARCH + 0.175)
 
 
 def test_picture(judge: Judge) -> None:
