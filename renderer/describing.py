@@ -2,10 +2,40 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 from renderer.core.registry import techniques
 from renderer.core.technique import Phenomenon, Technique
+
+
+def listed(found: Phenomenon) -> dict[str, Any]:
+    """Name, title, help and presets of a scene."""
+    presets = [{"name": name, "title": preset.title, "help": preset.help} for name, preset in found.presets.items()]
+    return {"name": found.name, "title": found.title, "help": found.help, "presets": presets}
+
+
+def described(found: Phenomenon, documents: Mapping[str, dict[str, Any]], version: tuple[int, int]) -> dict[str, Any]:
+    """Schema, defaults, presets and slots of a scene.
+
+    Args:
+        found: the phenomenon.
+        documents: whole state of each preset.
+        version: of the OpenGL at hand.
+    """
+    presets = {
+        name: {"title": preset.title, "help": preset.help, "document": documents[name]}
+        for name, preset in found.presets.items()
+    }
+    return {
+        "name": found.name,
+        "title": found.title,
+        "help": found.help,
+        "schema": found.state.model_json_schema(),
+        "defaults": found.state().model_dump(mode="json"),
+        "presets": presets,
+        "slots": slots_of(found, version),
+    }
 
 
 def slots_of(found: Phenomenon, version: tuple[int, int]) -> list[dict[str, Any]]:

@@ -6,7 +6,7 @@ import threading
 import time
 from collections import OrderedDict
 from collections.abc import Callable, Mapping
-from concurrent.futures import Executor, Future
+from concurrent.futures import Executor
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -18,9 +18,10 @@ from renderer.core.params import merge, set_path, validate
 from renderer.core.registry import phenomena, phenomenon
 from renderer.core.technique import Arrays, Bake, BakedArrays
 from renderer.core.work import Workers
-from renderer.describing import slots_of
+from renderer.describing import described, listed
 from renderer.gl.thread import GLThread
 from renderer.picture import Frame, Picture
+from renderer.preparation import Preparation, following
 from renderer.view import Painter, Place, View, paint
 from renderer.world.sampling import offset
 from renderer.world.state import SceneState, migrate, samples_of
@@ -36,18 +37,6 @@ KEPT_IN_MEMORY = 24
 """Baked results that stay in memory; what one state needs is well below."""
 
 __all__ = ["Frame", "Picture", "Preparation", "Session", "View"]
-
-
-class Preparation:
-    """Bakes on their way.
-
-    Attributes:
-        future: done when the state may be drawn.
-    """
-
-    def __init__(self, future: Future[None], cancel: Callable[[], None]) -> None:
-        self.future = future
-        self.cancel = cancel
 
 
 class Session:
@@ -73,17 +62,7 @@ class Session:
 
     def scenes(self) -> list[dict[str, Any]]:
         """Name, title, help and presets of every scene."""
-        return [
-            {
-                "name": p.name,
-                "title": p.title,
-                "help": p.help,
-                "presets": [
-                    {"name": name, "title": preset.title, "help": preset.help} for name, preset in p.presets.items()
-                ],
-            }
-            for p in phenomena().values()
-        ]
+        return [listed(found) for found in phenomena().values()]
 
     def describe(self, scene: str) -> dict[str, Any]:
         """Schema, defaults, presets and slots of a scene, for the page and the command line.
@@ -92,23 +71,8 @@ class Session:
             InputError: there is no such scene.
         """
         found = phenomenon(scene)
-        presets = {
-            name: {
-                "title": preset.title,
-                "help": preset.help,
-                "document": self.state(scene, name).model_dump(mode="json"),
-            }
-            for name, preset in found.presets.items()
-        }
-        return {
-            "name": found.name,
-            "title": found.title,
-            "help": found.help,
-            "schema": found.state.model_json_schema(),
-            "defaults": self.state(scene).model_dump(mode="json"),
-            "presets": presets,
-            "slots": slots_of(found, self.gl.info.version),
-        }
+        documents = {name: self.state(scene, name).model_dump(mode="json") for name in found.presets}
+        return described(found, documents, self.gl.info.version)
 
     def state(
         self,
@@ -159,20 +123,7 @@ class Session:
         """Bake what the state needs, or take it from the cache; nobody waits on this thread."""
         bakes = self._bakes(state)
         task = self._workers.run_all(bakes, self.cache, on_progress)
-        done: Future[None] = Future()
-
-        def settle(finished: Future[dict[str, Any]]) -> None:
-            failure = None if finished.cancelled() else finished.exception()
-            if finished.cancelled():
-                done.cancel()
-            elif failure is not None:
-                done.set_exception(failure)
-            else:
-                self._keep(bakes, finished.result())
-                done.set_result(None)
-
-        task.future.add_done_callback(settle)
-        return Preparation(done, task.cancel)
+        return following(task, lambda arrays: self._keep(bakes, arrays))
 
     def render(self, state: SceneState, width: int, height: int, on_progress: Report | None = None) -> Picture:
         """Bake what is missing and draw the picture that `state.quality` asks for; blocks.
@@ -236,21 +187,36 @@ class Session:
             name = f"view-{self._views}"
         return View(name, self.gl, self._painter, self._arrays)
 
-    def add_asset(self, path: Path, filename: str) -> dict[str, Any]:
+    def add_asset(self, path: Path, filename: str, reading: Mapping[str, Any] | None = None) -> dict[str, Any]:
         """Check an uploaded file in a process of its own and keep it.
 
+        Args:
+            path: the file.
+            filename: what its owner calls it.
+            reading: fields of its kind's reading that the file leaves unsaid, as `{"holes": "fill"}`; a document that
+                uses the file has to say them too.
+
         Returns:
-            Its `asset` (as documents name it), kind, size, units and preview.
+            Its `asset` (as documents name it), kind, name, `reading` as given, preview, and when it `expires` unless it
+            is used (seconds since 1970).
 
         Raises:
             AssetError, LimitError: what is wrong with it, in words.
         """
         from renderer.world.upload import check_in_worker, recognise
 
+        said = dict(reading or {})
         kind = recognise(path, filename)
-        preview = check_in_worker(path, kind)
+        preview = check_in_worker(path, kind, reading=said)
         digest = self.assets.put(path.read_bytes(), kind, filename)
-        return {"asset": f"asset:{digest}", "kind": kind, "name": filename, "preview": preview}
+        return {
+            "asset": f"asset:{digest}",
+            "kind": kind,
+            "name": filename,
+            "reading": said,
+            "preview": preview,
+            "expires": self.assets.get(digest).expires,
+        }
 
     @staticmethod
     def quantities() -> list[dict[str, Any]]:
@@ -305,6 +271,8 @@ class Session:
             key = bake_key(bake)
             with self._lock:
                 held = self._loaded.get(key)
+                if held is not None:
+                    self._loaded.move_to_end(key)  # what is drawn stays, whatever others prepare
             if held is None:
                 arrays = self.cache.get(key)
                 if arrays is None:

@@ -55,7 +55,11 @@ class Hub:
             Busy: as much waits as may.
         """
         with self.admitted():
-            return await asyncio.get_running_loop().run_in_executor(self.workers, function, *arguments)
+            return await self.busy(function, *arguments)
+
+    async def busy(self, function: Callable[..., T], *arguments: Any) -> T:
+        """As `work`, for a request that was admitted before."""
+        return await asyncio.get_running_loop().run_in_executor(self.workers, function, *arguments)
 
     def check_size(self, width: int, height: int, pixels: int | None = None) -> None:
         """Refuse a picture that is too large.

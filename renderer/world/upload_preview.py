@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
+from renderer.core.errors import InputError
 from renderer.core.params import validate
 from renderer.world.image_files import load_image
 from renderer.world.limits import Limits, Unsaid
@@ -86,6 +87,8 @@ def volume(path: Path, limits: Limits, reading: Mapping[str, Any]) -> Preview:
 
 def image(path: Path, limits: Limits, reading: Mapping[str, Any]) -> Preview:
     """Pixels and range of a picture; it has nothing to be said."""
+    if reading:
+        raise InputError(next(iter(reading)), "is not a parameter: a picture leaves nothing unsaid")
     picture = load_image(path, limits)
     return {
         "width": picture.shape[1],

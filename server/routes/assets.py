@@ -25,6 +25,10 @@ FORM: dict[str, Any] = {
                     "type": "object",
                     "required": ["file"],
                     "properties": {"file": {"type": "string", "format": "binary", "description": "The file."}},
+                    "additionalProperties": {
+                        "type": "string",
+                        "description": "What the file leaves unsaid, as `holes`, `cell_size` or `up`; lists are JSON.",
+                    },
                 }
             }
         },
@@ -40,12 +44,16 @@ FORM: dict[str, Any] = {
     responses={413: {"description": "The file is too large"}, 422: {"description": "The file was refused"}},
 )
 async def upload(request: Request, hub: TheHub) -> Response:
-    """Check and store a terrain, mesh, volume or other file; answers its name in documents, its kind and a preview."""
-    with tempfile.TemporaryDirectory(prefix="umbrage-upload-") as folder:
+    """Check and store a terrain, mesh, volume or other file; answers its name in documents, its kind and a preview.
+
+    Fields beside `file` say what the file leaves unsaid, as a document's `reading` does: `holes=fill`,
+    `cell_size=[12, 12]`. The file is checked as read so; the answer repeats them, for the document to say them too.
+    """
+    with hub.admitted(), tempfile.TemporaryDirectory(prefix="umbrage-upload-") as folder:
         path = Path(folder) / "upload"  # the client's name is no path
         try:
-            name = await receive(request, path, hub.settings.upload_bytes, hub.call)
-            answer = await hub.work(hub.session.add_asset, path, name)
+            came = await receive(request, path, hub.settings.upload_bytes, hub.call)
+            answer = await hub.busy(hub.session.add_asset, path, came.name, came.fields)
         except InputError:
             hub.metrics.uploads.labels("refused").inc()
             raise

@@ -242,14 +242,15 @@ class FakeSession:
         picture = self.render(state, width, height, on_progress)
         return SimpleNamespace(files={"reference.png": picture.encode("png")}, numbers={"relative_rmse": 0.1})
 
-    def add_asset(self, path: Path, filename: str) -> dict[str, Any]:
+    def add_asset(self, path: Path, filename: str, reading: Mapping[str, Any] | None = None) -> dict[str, Any]:
         data = path.read_bytes()
         if not data.startswith(b"good"):
             raise AssetError("file", "no loader reads this", ".npz .tif")
         kept = self.folder / "kept"
         kept.write_bytes(data)
         self.assets.kept["abc"] = SimpleNamespace(path=kept, kind="terrain", name=filename, expires=1.0)
-        return {"hash": "abc", "kind": "terrain", "name": filename, "bytes": len(data), "preview": {}, "expires": 1.0}
+        return {"asset": "asset:abc", "kind": "terrain", "name": filename, "reading": dict(reading or {}),
+                "preview": {}, "expires": 1.0}
 
     def quantities(self) -> list[dict[str, Any]]:
         return [

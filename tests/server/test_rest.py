@@ -3,6 +3,7 @@ from __future__ import annotations
 import io
 import threading
 import time
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -143,6 +144,29 @@ def test_an_upload_is_checked_stored_and_listed(client: TestClient) -> None:
     assert client.get("/api/assets").json()[0]["hash"] == "abc"
     assert client.get("/api/assets/asset:abc").json()["kind"] == "terrain"
     assert client.get("/api/assets/other").status_code == 404
+
+
+def test_what_a_file_leaves_unsaid_comes_beside_it(client: TestClient) -> None:
+    beside = {"holes": "fill", "cell_size": "[12, 7.5]"}
+    stored = client.post("/api/assets", files={"file": ("hill.npz", b"good bytes")}, data=beside)
+    assert (stored.status_code, stored.json()["reading"]) == (201, {"holes": "fill", "cell_size": [12, 7.5]})
+    much = client.post("/api/assets", files={"file": ("hill.npz", b"good bytes")}, data={"notes": "x" * 5000})
+    assert (much.status_code, errors(much)[0]["field"]) == (422, "file")
+
+
+def test_uploads_are_counted_while_they_come(session: FakeSession) -> None:
+    from server.app import create_app
+
+    def slowly() -> Iterator[bytes]:
+        yield b'--b\r\nContent-Disposition: form-data; name="file"; filename="a.npz"\r\n\r\ngood'
+        yield b"\r\n--b--\r\n"
+
+    app = create_app(session, Settings(hosts="testserver", requests=1))
+    form = {"Content-Type": "multipart/form-data; boundary=b"}
+    with TestClient(app, raise_server_exceptions=False) as client:
+        with app.state.hub.admitted():
+            assert client.post("/api/assets", content=slowly(), headers=form).status_code == 503
+        assert client.post("/api/assets", content=slowly(), headers=form).status_code == 201
 
 
 @pytest.mark.parametrize("data", [b"", b"bad", b"good" + b"x" * 5000, b"good" + b"x" * 100_000])

@@ -16,9 +16,11 @@ import pytest
 import trimesh
 from PIL import Image
 
+from renderer.core.cache import AssetStore
 from renderer.core.errors import AssetError, InputError, LimitError
 from renderer.world import upload
 from renderer.world.limits import Limits
+from renderer.world.mesh_formats import FORMATS as MESH_FORMATS
 from renderer.world.upload import Kind, check_in_worker, recognise
 from renderer.world.upload_preview import PREVIEWS
 
@@ -62,6 +64,26 @@ def test_every_kind_is_recognised_by_its_content(samples: dict[str, Path]) -> No
         "volume": "volume",
     }
     assert {name: recognise(path, "x.txt") for name, path in samples.items()} == expected
+
+
+def test_files_of_every_format_that_is_read_can_be_kept(tmp_path: Path) -> None:
+    store = AssetStore(tmp_path / "assets")
+    for ending in ("glb", "gltf", "obj", "ply", "stl", "off"):
+        assert ending in MESH_FORMATS.lower()
+        assert store.get(store.put(b"data", "mesh", f"tree.{ending}")).path.suffix == f".{ending}"
+    for ending in ("tif", "tiff", "png", "npz", "jpg", "jpeg", "hdr", "exr", "npy"):
+        store.put(b"data", "image", f"file.{ending}")
+
+
+def test_what_a_file_leaves_unsaid_is_checked_with_it(tmp_path: Path) -> None:
+    holed = HEIGHTS.copy()
+    holed[2, 3] = np.nan
+    path = npz(tmp_path / "holed.npz", elevation=holed, cell_size=(7.0, 8.0))
+    with pytest.raises(AssetError, match="holes = fill"):
+        check_in_worker(path, "terrain")
+    assert "1 holes were filled" in check_in_worker(path, "terrain", reading={"holes": "fill"})["notes"]
+    with pytest.raises(InputError, match="hole: is not a parameter"):
+        check_in_worker(path, "terrain", reading={"hole": "fill"})
 
 
 def test_every_kind_has_a_preview_and_every_preview_a_kind() -> None:
