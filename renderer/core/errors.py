@@ -29,6 +29,17 @@ class InputError(UmbrageError):
         sentence = ": ".join(part for part in (self.field, self.message) if part)
         return f"{sentence} (allowed: {self.allowed})" if self.allowed else sentence
 
+    def at(self, field: str, silent: tuple[str, ...] = ("file", "asset")) -> InputError:
+        """The same refusal where a document made it, as `terrain.asset`.
+
+        Args:
+            field: the document's field.
+            silent: fields of a file's own that the sentence need not name, because `field` says as much.
+        """
+        own = self.field.rsplit(".", 1)[-1]
+        named = own in silent or own == field.rsplit(".", 1)[-1]
+        return type(self)(field, self.message if named else f"{own} {self.message}", self.allowed)
+
     def as_dict(self) -> dict[str, str]:
         """The error as the doors send it."""
         return {"field": self.field, "message": self.message, "allowed": self.allowed}

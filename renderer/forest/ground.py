@@ -10,6 +10,7 @@ import numpy as np
 from scipy.ndimage import gaussian_filter
 
 from renderer.core.cache import AssetStore
+from renderer.core.errors import InputError
 from renderer.core.technique import Arrays
 from renderer.forest.world_scale import CELL, NODES, STAND_TOP
 from renderer.world.terrain import DEFAULT_CENTRE, TerrainReading, crop, default_terrain, load_terrain
@@ -19,14 +20,21 @@ RIM = 3
 
 
 def square(arguments: dict[str, Any]) -> np.ndarray:
-    """Elevation (N, N) float32 [m] of the document's `terrain`, row 0 the northern edge."""
+    """Elevation (N, N) float32 [m] of the document's `terrain`, row 0 the northern edge.
+
+    Raises:
+        InputError: the user's file cannot serve, naming the document's field.
+    """
     if arguments["kind"] == "built_in":
-        terrain, centre = default_terrain(), DEFAULT_CENTRE
-    else:
+        return crop(default_terrain(), DEFAULT_CENTRE, NODES * CELL, CELL).elevation
+    try:
         path = AssetStore().get(arguments["asset"].removeprefix("asset:")).path
         terrain = load_terrain(path, reading=TerrainReading.model_validate(arguments["reading"]))
-        centre = (arguments["east"], arguments["north"])
-    return crop(terrain, centre, NODES * CELL, CELL).elevation
+        return crop(terrain, (arguments["east"], arguments["north"]), NODES * CELL, CELL).elevation
+    except InputError as failure:
+        if failure.field in TerrainReading.model_fields:
+            raise failure.at(f"terrain.reading.{failure.field}") from None
+        raise failure.at("terrain.east" if failure.field == "centre" else "terrain.asset") from None
 
 
 def cover_map(elevation: np.ndarray, base: float, rules: dict[str, Any]) -> np.ndarray:

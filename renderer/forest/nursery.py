@@ -39,8 +39,11 @@ def nursery(arguments: dict[str, Any]) -> tuple[list[Tree], np.ndarray, list[int
         InputError: no species has any weight, or the uploaded mesh cannot serve as a tree.
     """
     if arguments.get("mesh"):
-        path = AssetStore().get(str(arguments["mesh"]).removeprefix("asset:")).path
-        return [own_tree(load_mesh(path))], np.ones(1), [len(species())]
+        try:
+            mesh = load_mesh(AssetStore().get(str(arguments["mesh"]).removeprefix("asset:")).path)
+        except InputError as failure:
+            raise failure.at("canopy.mesh") from None
+        return [own_tree(mesh)], np.ones(1), [len(species())]
     meshes: list[Tree] = []
     shares: list[float] = []
     kinds: list[int] = []
