@@ -127,10 +127,10 @@ def spoil(monkeypatch: pytest.MonkeyPatch) -> Spoil:
 
         with monkeypatch.context() as patch:
             patch.setattr(source, "_read", reads)
-            program._frame.cache_clear()
+            program._composed.cache_clear()
             program.pass_source.cache_clear()
             yield
-        program._frame.cache_clear()
+        program._composed.cache_clear()
         program.pass_source.cache_clear()
 
     return spoiled

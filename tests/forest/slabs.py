@@ -16,15 +16,13 @@ ALPHA = 12
 HALF = 100.0
 RAYS = 2048
 NOISE = 2.0 / RAYS + 1e-3
-"""Of a share counted over stratified rays: two strata, and a thousandth for float32."""
+"""Of a share counted over stratified rays: two rays, and a thousandth for float32."""
 
 FILES = ("forest/crossing.glsl", "forest/events.glsl", "forest/filter/none.glsl")
 
-TRACE = """Events events = no_events(xi);
-geometry_trace(origin, direction, 0.0, vec4(jitter, xi, 0.5, 0.5), events);
-float bare = 0.0;
-for (int k = 0; k < LIGHT_EVENTS; k++) bare += events.place[k].w == GROUND ? 1.0 / float(LIGHT_EVENTS) : 0.0;
-result = vec4(bare, events.opacity, events.place[0].w, events.place[0].z);"""
+TRACE = """Event event = no_event(xi);
+geometry_trace(origin, direction, 0.0, vec4(jitter, xi, 0.5, 0.5), event);
+result = vec4(event.place.w == GROUND ? 1.0 : 0.0, event.opacity, event.place.w, event.place.z);"""
 
 
 def strata() -> tuple[np.ndarray, np.ndarray]:
@@ -43,7 +41,7 @@ def trace(
     ask: Callable[..., np.ndarray], technique: Slices | RayMarch, origin: Any, direction: Any,
     pattern: Mapping[str, np.ndarray], terrain: Mapping[str, np.ndarray] | None = None,
 ) -> np.ndarray:
-    """Share of the light levels on the ground, opacity, height and z of the first level: (RAYS, 4)."""
+    """Whether each ray looks at the light on the ground, its opacity, and height and z of that place: (RAYS, 4)."""
     xi, jitter = strata()
     d = np.asarray(direction, float) / np.linalg.norm(direction)
     inputs = {"xi": xi, "jitter": jitter, "origin": np.tile(np.asarray(origin, np.float32), (RAYS, 1)),

@@ -45,8 +45,8 @@ def test_heights_are_bilinear_and_continue_beyond_the_edge(ask: Ask) -> None:
 
 
 @pytest.mark.parametrize(("right", "wrong"), [
-    ("f.x * rise.x + f.y * (rise.y + f.x * rise.z)", "f.y * rise.x + f.x * (rise.y + f.y * rise.z)"),
-    ("rise.y + f.x * rise.z", "rise.y - f.x * rise.z"),
+    ("dot(f, rise.xy) + f.x", "dot(f.yx, rise.xy) + f.x"),
+    ("+ f.x * f.y * rise.z", "- f.x * f.y * rise.z"),
 ])
 def test_a_wrong_height_is_found(ask: Ask, spoil: Callable, right: str, wrong: str) -> None:
     with spoil("forest/world.glsl", right, wrong):

@@ -44,7 +44,7 @@ SIDE = 64
 POSITIONS = 8
 """Sub-pixel positions, the same for technique and reference."""
 
-TURNS = 8
+TURNS = 16
 """Jitters at each position, so that a technique's picture is converged and speaks of the method alone."""
 
 SHOWN = 96
@@ -90,7 +90,8 @@ class Judge:
                 tenth, for what another rasteriser rounds otherwise.
             against, others: as for `distance`.
         """
-        assert self.distance(slot, kind, against, **others) <= 1.1 * sum(costs)
+        found, budget = self.distance(slot, kind, against, **others), 1.1 * sum(costs)
+        assert found <= budget
 
     def distance(self, slot: str, kind: str, against: str = "unshadowed", **others: Any) -> float:
         """Relative RMSE of the converged picture, over the colours.
