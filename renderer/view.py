@@ -43,7 +43,8 @@ class Painter:
         drawer = self._renderers[state.scene]
         for _ in range(count):
             sample = sums.samples
-            sums.draw(sample, lambda n=sample: drawer.draw(state, baked, sums.size, place(n), n))  # type: ignore[misc]
+            prepared = drawer.prepare(state, baked, sums.size, place(sample), sample)
+            sums.draw(sample, lambda frame=prepared: drawer.draw(frame))  # type: ignore[misc]
 
     def displayed(self, gl: GL, sums: Accumulator, state: SceneState) -> Any:
         """The picture as displayed, (height, width, 3) uint8."""

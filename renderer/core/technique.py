@@ -82,22 +82,28 @@ class BakedArrays:
 class SceneRenderer(Protocol):
     """Draws one phenomenon for every view; lives on the GL thread."""
 
-    def draw(
+    def prepare(
         self,
         state: Any,
         baked: Mapping[str, BakedArrays],
         size: tuple[int, int],
         offset: tuple[float, float],
         sample: int,
-    ) -> None:
-        """Draw one sample as linear premultiplied radiance into the bound framebuffer.
+    ) -> Any:
+        """Draw what one sample needs into targets of the renderer's own.
 
         Args:
             state, baked: the document and what it needed baked, by name.
             size: (width, height) in pixels.
             offset: of the sample inside its pixel, from the top-left corner.
             sample: its number, from which any jitter follows.
+
+        Returns:
+            What `draw` needs.
         """
+
+    def draw(self, prepared: Any) -> None:
+        """Draw a prepared sample, in one pass, as linear premultiplied radiance into the bound framebuffer."""
 
     def release(self) -> None:
         """Free every GL object."""

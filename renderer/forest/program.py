@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 ENTRY_STEPS = 128
 """Safe steps a ray may take over the canopy before it meets it."""
 
-SCOUT_BLOCK = 8
-"""Pixels a side of the blocks whose way to the canopy is found once for all their rays."""
+SCOUT_BLOCKS = (16, 4, 2)
+"""Pixels a side of the blocks whose way to the canopy is found once for all their rays, one after the other."""
 
 MARCH_STEPS = 1024
 """Steps a ray may take inside the canopy layer."""
@@ -33,7 +33,7 @@ uniform sampler3D pattern_voxels;
 uniform sampler3D pattern_normal;
 uniform sampler2D tiles;
 uniform sampler2D scout;          // m: where the rays of a block of pixels begin, row 0 the top
-uniform sampler2D traced_place;   // m and normalised height: where the rays of a sample look at the light
+uniform sampler2D traced_place;   // m along the ray, and normalised height: where a sample looks at the light
 uniform sampler2D traced_voxel;   // what stands there, and the ray's opacity
 uniform vec2 terrain_range;       // m
 uniform float terrain_cell;       // m
@@ -66,15 +66,15 @@ vec4 pixel_ray(out vec2 corner, out vec3 origin, out vec3 direction) {
 }
 """
 
-TRACE_BODY = """layout(location = 0) out vec4 place_found;
+TRACE_BODY = """layout(location = 0) out vec2 place_found;
 layout(location = 1) out vec4 voxel_found;
 void main() {
     vec2 corner;
     vec3 origin, direction;
     vec4 jitter = pixel_ray(corner, origin, direction);
-    float start = textureLod(scout, (floor((corner + 0.5) / SCOUT_BLOCK) + 0.5) / vec2(textureSize(scout, 0)), 0.0).r;
+    float start = texelFetch(scout, ivec2(corner + 0.5) / %d, 0).r;
     Event event = forest_trace(origin, direction, start, jitter);
-    place_found = event.place;
+    place_found = vec2(dot(event.place.xyz - origin, direction), event.place.w);
     voxel_found = vec4(event.voxel.xyz / 65535.0, event.opacity);
 }"""
 
@@ -83,10 +83,11 @@ void main() {
     vec2 corner;
     vec3 origin, direction;
     vec4 jitter = pixel_ray(corner, origin, direction);
-    vec4 place = texelFetch(traced_place, ivec2(gl_FragCoord.xy), 0);
+    vec2 found = texelFetch(traced_place, ivec2(gl_FragCoord.xy), 0).rg;
     vec4 voxel = texelFetch(traced_voxel, ivec2(gl_FragCoord.xy), 0);
-    float level = level_at(dot(place.xyz - origin, direction), jitter.z);
-    float reached = place.w == NOTHING ? 0.0 : 1.0;
+    float level = level_at(found.x, jitter.z);
+    float reached = found.y == NOTHING ? 0.0 : 1.0;
+    vec4 place = vec4(origin + reached * found.x * direction, found.y);
     radiance = vec4(reached * outgoing(place, vec4(voxel.xyz * 65535.0, 0.0), level), voxel.w);
 #if BACKGROUND_SKY == 1
     radiance.rgb += (1.0 - radiance.a) * (sky_radiance(direction) + sky_sun_disc(direction));
@@ -99,7 +100,9 @@ TRACE_SLOTS = ("geometry", "filter")
 
 SCOUT_BODY = """layout(location = 0) out vec4 distance_found;
 void main() {
-    distance_found = vec4(scout_distance(gl_FragCoord.xy - 0.5));
+    ivec2 block = ivec2(gl_FragCoord.xy);
+    float t = %s;
+    distance_found = vec4(scout_distance(vec2(block), %d.0, t));
 }"""
 
 PASS_BODY = """layout(location = 0) out vec4 texel;
@@ -113,7 +116,8 @@ Chosen = tuple[tuple[str, type["ForestTechnique"], tuple[tuple[str, str], ...]],
 
 def trace_source(state: ForestState) -> Source:
     """The fragment stage that finds where each ray looks at the light, and what stands there; no sun is in it."""
-    return _composed(_chosen(state, TRACE_SLOTS), ("forest/crossing.glsl",), ("forest/trace.glsl",), TRACE_BODY, True)
+    body = TRACE_BODY % SCOUT_BLOCKS[-1]
+    return _composed(_chosen(state, TRACE_SLOTS), ("forest/crossing.glsl",), ("forest/trace.glsl",), body, True)
 
 
 def shade_source(state: ForestState) -> Source:
@@ -151,12 +155,14 @@ def pass_source(slot: str, name: str, glsl: str, declarations: tuple[str, ...]) 
     return assemble([glsl], defines=_limits(), declarations=text, body=PASS_BODY % (slot, name))
 
 
-@functools.lru_cache(maxsize=1)
-def scout_source() -> Source:
-    """The fragment stage that finds where the rays of each block of pixels begin."""
+@functools.lru_cache(maxsize=len(SCOUT_BLOCKS))
+def scout_source(number: int) -> Source:
+    """The fragment stage that finds where the rays of each block of pixels begin, from the blocks before if any."""
+    side = SCOUT_BLOCKS[number]
+    start = f"texelFetch(scout, block / {SCOUT_BLOCKS[number - 1] // side}, 0).r" if number else "0.0"
     text = "\n".join([CAMERA_DECLARATIONS, WORLD_DECLARATIONS, uniform_declarations(Ground, "ground")])
     files = ["lib/camera.glsl", "forest/world.glsl", "forest/scout.glsl"]
-    return assemble(files, defines=_limits(), declarations=text, body=SCOUT_BODY)
+    return assemble(files, defines=_limits(), declarations=text, body=SCOUT_BODY % (start, side))
 
 
 def _limits() -> dict[str, str | int]:
@@ -164,5 +170,4 @@ def _limits() -> dict[str, str | int]:
         "ENTRY_STEPS": ENTRY_STEPS,
         "MARCH_STEPS": MARCH_STEPS,
         "TILE_MAP": f"{TILE_MAP}.0",
-        "SCOUT_BLOCK": f"{SCOUT_BLOCK}.0",
     }

@@ -10,7 +10,7 @@ import numpy as np
 
 from renderer.core.params import uniforms
 from renderer.core.technique import BakedArrays
-from renderer.forest.program import SCOUT_BLOCK, TRACE_SLOTS, pass_source, scout_source, shade_source, trace_source
+from renderer.forest.program import SCOUT_BLOCKS, TRACE_SLOTS, pass_source, scout_source, shade_source, trace_source
 from renderer.forest.textures import bilinear_cells, ground_textures, pattern_textures, tile_map
 from renderer.forest.world_scale import CANOPY_HEIGHT, CELL, NODES, REACH, TILE_SIDE, VOXEL
 from renderer.gl.context import GL
@@ -27,9 +27,10 @@ if TYPE_CHECKING:
     from renderer.forest.state import ForestState
 
 Baked = Mapping[str, BakedArrays]
+Prepared = tuple[Source, dict[str, AnyTexture], dict[str, Any]]
 
-TRACES_KEPT = 192 << 20
-"""Bytes of traced samples kept: thirty of 512 x 512, so that a moved sun only lights them again."""
+TRACES_KEPT = 64 << 20
+"""Bytes of traced samples kept: sixteen of 512 x 512, so that a moved sun only lights them again."""
 
 
 class ForestRenderer:
@@ -39,13 +40,13 @@ class ForestRenderer:
         self._gl = gl
         self._baked = Resident(gl, 6)
         self._moment = Resident(gl, 24)
-        self._traces = LayerStore(gl, ("f4", "nu2"), TRACES_KEPT)
+        self._traces = LayerStore(gl, ((2, "f4"), (4, "nu2")), TRACES_KEPT)
         self._bounds: dict[tuple[str, str], dict[str, Any]] = {}
 
-    def draw(
+    def prepare(
         self, state: ForestState, baked: Baked, size: tuple[int, int], offset: tuple[float, float], sample: int
-    ) -> None:
-        """Draw one sample as linear premultiplied radiance into the bound framebuffer.
+    ) -> Prepared:
+        """Trace one sample and draw what looks from the sun, unless they are still there.
 
         Args:
             state, baked: the document and what it needed baked.
@@ -63,7 +64,11 @@ class ForestRenderer:
         traced = self._traced(state, baked, (size, offset, sample), values, textures)
         values |= self._shadow_pass(state, baked, size, values, textures)
         self._technique_textures(state, baked, textures)
-        run_fullscreen(self._gl, shade_source(state), {**textures, **self._sky(state, baked), **traced}, values)
+        return shade_source(state), {**textures, **self._sky(state, baked), **traced}, values
+
+    def draw(self, prepared: Prepared) -> None:
+        """Light a prepared sample: linear premultiplied radiance into the bound framebuffer."""
+        run_fullscreen(self._gl, *prepared)
 
     def release(self) -> None:
         """Free every texture."""
@@ -182,11 +187,15 @@ class ForestRenderer:
         """Where the rays of each block of pixels begin; the same until the camera or the ground changes."""
 
         def draw() -> dict[str, Target]:
-            across, down = (-(-side // SCOUT_BLOCK) for side in size)
-            target = Target(self._gl, across, down, components=1)
-            return {"target": self._draw_into(target, scout_source(), values, textures)}
+            found = dict(textures)
+            targets = {}
+            for number, side in enumerate(SCOUT_BLOCKS):
+                target = Target(self._gl, -(-size[0] // side), -(-size[1] // side), components=1)
+                targets[f"{side}"] = self._draw_into(target, scout_source(number), values, found)
+                found["scout"] = target.texture
+            return targets
 
-        made = self._moment.get(("scout", state.camera, size, baked["terrain"].key), draw)["target"]
+        made = self._moment.get(("scout", state.camera, size, baked["terrain"].key), draw)[f"{SCOUT_BLOCKS[-1]}"]
         assert isinstance(made, Target)
         return made.texture
 
@@ -210,10 +219,8 @@ class ForestRenderer:
         )
 
         def draw(layers: Layers) -> None:
-            bound = self._gl.ctx.fbo
             layers.use()
             run_fullscreen(self._gl, trace_source(state), textures, values)
-            bound.use()
 
         place, voxel = self._traces.get(key, sample[0], draw)
         return {"traced_place": place, "traced_voxel": voxel}
@@ -221,12 +228,8 @@ class ForestRenderer:
     def _draw_into(
         self, target: Target, source: Source, values: dict[str, Any], textures: dict[str, AnyTexture]
     ) -> Target:
-        """Draw a full-screen pass and come back to the framebuffer that was bound."""
-        bound = self._gl.ctx.fbo
         target.use()
-        target.clear()  # so that it holds the pass whether the frame around it replaces or adds
         run_fullscreen(self._gl, source, textures, values)
-        bound.use()
         return target
 
     def _draw_pass(self, slot: str, sun_pass: Any, values: dict[str, Any], textures: dict[str, AnyTexture]) -> Target:

@@ -9,6 +9,10 @@ import moderngl
 
 from renderer.gl.context import GL
 
+Kind = tuple[int, str]
+BYTES = {"f1": 1, "nu2": 2, "f2": 2, "f4": 4}
+"""Bytes of a component by moderngl's name of its type."""
+
 
 class Layers:
     """A framebuffer with several textures.
@@ -16,21 +20,20 @@ class Layers:
     Args:
         gl: the context's objects.
         width, height: size in pixels.
-        dtypes: moderngl's name of each texture's component type; each has four components.
+        kinds: number of components (1, 2 or 4) and moderngl's name of the component type of each texture.
     """
 
-    def __init__(self, gl: GL, width: int, height: int, dtypes: Sequence[str]) -> None:
+    def __init__(self, gl: GL, width: int, height: int, kinds: Sequence[Kind]) -> None:
         self.size = (width, height)
-        self.textures = [gl.ctx.texture((width, height), 4, dtype=dtype) for dtype in dtypes]
+        self.textures = [gl.ctx.texture((width, height), components, dtype=dtype) for components, dtype in kinds]
         for texture in self.textures:
             texture.filter = moderngl.NEAREST, moderngl.NEAREST
             texture.repeat_x = texture.repeat_y = False
         self._framebuffer = gl.ctx.framebuffer(self.textures)
 
     def use(self) -> None:
-        """Draw into them from now on, cleared: what is drawn replaces or adds alike."""
+        """Draw into them from now on, over their whole area."""
         self._framebuffer.use()
-        self._framebuffer.clear(0.0, 0.0, 0.0, 0.0)
 
     def release(self) -> None:
         """Free them."""
@@ -44,13 +47,13 @@ class LayerStore:
 
     Args:
         gl: the context's objects.
-        dtypes: as in `Layers`.
+        kinds: as in `Layers`.
         bytes_kept: size of all layers together; one picture is kept whatever its size.
     """
 
-    def __init__(self, gl: GL, dtypes: Sequence[str], bytes_kept: int) -> None:
+    def __init__(self, gl: GL, kinds: Sequence[Kind], bytes_kept: int) -> None:
         self._gl = gl
-        self._dtypes = tuple(dtypes)
+        self._kinds = tuple(kinds)
         self._bytes_kept = bytes_kept
         self._held: OrderedDict[Hashable, Layers] = OrderedDict()
 
@@ -84,10 +87,10 @@ class LayerStore:
             return spare
         if spare is not None:
             spare.release()
-        return Layers(self._gl, *size, self._dtypes)
+        return Layers(self._gl, *size, self._kinds)
 
     def _bytes(self) -> int:
         return sum(self._bytes_of(layers.size) for layers in self._held.values())
 
     def _bytes_of(self, size: tuple[int, int]) -> int:
-        return size[0] * size[1] * sum(4 * {"f1": 1, "nu2": 2, "f2": 2, "f4": 4}[dtype] for dtype in self._dtypes)
+        return size[0] * size[1] * sum(components * BYTES[dtype] for components, dtype in self._kinds)
