@@ -159,6 +159,7 @@ class ForestRenderer:
                 technique,
                 angles(state.sun),
                 state.camera,
+                state.ground.map_seed,
                 size[0] / size[1],
                 baked["terrain"].key,
                 baked["pattern"].key,
