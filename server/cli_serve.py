@@ -6,7 +6,6 @@ import argparse
 import platform
 import shutil
 import signal
-import socket
 import sys
 from importlib.metadata import version
 from typing import Any
@@ -14,10 +13,11 @@ from typing import Any
 import uvicorn
 
 from renderer.core.cache import default_folder
-from renderer.core.errors import GLUnavailable, InputError
+from renderer.core.errors import GLUnavailable
 from renderer.session import Session
 from server.app import WEB, create_app
 from server.settings import Settings, load
+from server.sockets import FairProtocol, bind
 
 GRACE_S = 5
 """How long open requests may take to end once the server is asked to stop."""
@@ -43,7 +43,7 @@ def configure(app: Any, settings: Settings) -> uvicorn.Config:
         app,
         host=settings.host,
         port=settings.port,
-        ws="websockets-sansio",
+        ws=FairProtocol,
         ws_max_size=settings.message_bytes,
         ws_per_message_deflate=False,
         access_log=False,
@@ -51,30 +51,6 @@ def configure(app: Any, settings: Settings) -> uvicorn.Config:
         server_header=False,
         timeout_graceful_shutdown=GRACE_S,
     )
-
-
-def bind(settings: Settings) -> socket.socket:
-    """The listening socket, named as TCP in so many words: asyncio sends small messages at once only then.
-
-    Left to the default protocol number 0, it does not set TCP_NODELAY, and every picture would wait 40 ms for the
-    delayed acknowledgement of the message before it.
-
-    Raises:
-        InputError: the address cannot be bound to.
-    """
-    family = socket.AF_INET6 if ":" in settings.host else socket.AF_INET
-    listener = socket.socket(family, socket.SOCK_STREAM, socket.IPPROTO_TCP)
-    try:
-        listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-        listener.bind((settings.host, settings.port))
-    except OSError as failure:
-        listener.close()
-        raise InputError(
-            "port",
-            f"{settings.host}:{settings.port} cannot be bound to ({failure.strerror or failure})",
-            "a free port of this machine; 0 for any",
-        ) from None
-    return listener
 
 
 def address(settings: Settings, port: int) -> str:

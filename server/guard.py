@@ -129,7 +129,7 @@ class Guard:
             return 421, "Host", "this server does not answer to that name", " ".join(sorted(known))
         origin = headers.get("origin", "").lower().rstrip("/")
         guarded = scope["type"] == "websocket" or scope["method"] not in SAFE_METHODS
-        if guarded and origin and origin not in self._origins and urlsplit(origin).netloc != host:
+        if guarded and origin and origin not in self._origins and _place(origin) != host:
             return 403, "Origin", "a page of another origin may not use this server", "the server's own origin"
         return None
 
@@ -154,6 +154,14 @@ class Guard:
         """The page is opened with the token in its address once; its own requests carry it as a cookie."""
         if self._settings.token and scope["path"] == "/" and b"token=" in scope.get("query_string", b""):
             headers.append("Set-Cookie", f"{COOKIE}={self._settings.token}; Path=/; HttpOnly; SameSite=Strict")
+
+
+def _place(origin: str) -> str:
+    """Host and port of an Origin header; empty, and so nobody's, where it is no address."""
+    try:
+        return urlsplit(origin).netloc
+    except ValueError:
+        return ""
 
 
 def _name(host: str) -> str:

@@ -74,17 +74,19 @@ class Stream:
 
     async def _receive(self, event: Any) -> None:
         """Answer one message."""
-        number: int | None = None
+        message, failure = _understood(event)
+        # An acknowledgement costs nothing, and one that was dropped would stop the pictures. What is no message counts.
+        if not isinstance(message, protocol.Ack) and not self._allowance.take(time.monotonic()):
+            await self._overrun()
+        elif failure is not None:
+            await self._refuse(failure)
+        else:
+            await self._answer(message)
+        await asyncio.sleep(0)  # a full socket never makes receiving wait: others must have their turn
+
+    async def _answer(self, message: Any) -> None:
         try:
-            text = event.get("text")
-            if text is None:
-                raise InputError("", "binary messages are not understood", "JSON text")
-            message = protocol.parse(text)
-            number = getattr(message, "id", None)
-            # An acknowledgement costs nothing, and one that was dropped would stop the pictures.
-            if not isinstance(message, protocol.Ack) and not self._allowance.take(time.monotonic()):
-                await self._overrun()
-            elif isinstance(message, protocol.Ping):
+            if isinstance(message, protocol.Ping):
                 await self._tell(protocol.Pong(id=message.id))
             elif isinstance(message, protocol.Hello):
                 await self._hello(message)
@@ -95,14 +97,13 @@ class Stream:
         except GONE:
             raise
         except Exception as failure:  # a message never ends a session; what is unexpected is logged
-            await self._refuse(failure, number)
+            await self._refuse(failure, getattr(message, "id", None))
 
     async def _overrun(self) -> None:
         self._hub.metrics.refused.inc()
         if self._allowance.tell(time.monotonic()):
             limit = f"at most {self._hub.settings.message_rate} a second"
             await self._tell(protocol.Refusal(field="", message="too many messages; some were dropped", allowed=limit))
-        await asyncio.sleep(0)  # a full socket never makes receiving wait: others must have their turn
 
     async def _dispatch(self, live: Live, message: BaseModel) -> None:
         if isinstance(message, protocol.Patch):
@@ -182,6 +183,17 @@ class Stream:
         except Exception as failure:  # a fault of ours: logged, and told rather than a frozen picture
             with contextlib.suppress(*GONE):
                 await self._refuse(failure)
+
+
+def _understood(event: Any) -> tuple[Any, UmbrageError | None]:
+    """The message that came, or why it is none."""
+    text = event.get("text")
+    try:
+        if text is None:
+            raise InputError("", "binary messages are not understood", "JSON text")
+        return protocol.parse(text), None
+    except UmbrageError as failure:
+        return None, failure
 
 
 async def serve(socket: WebSocket, hub: Hub) -> None:

@@ -27,8 +27,8 @@ def test_another_name_for_a_loopback_server_is_refused(session: FakeSession, hos
 def test_pages_of_another_origin_may_not_write_or_stream(session: FakeSession) -> None:
     with served(session, hosts="testserver", origins="https://notebook.example") as client:
         body = {"scene": "fake", "width": 8, "height": 8, "quality": {"kind": "draft"}}
-        for origin, status in [("http://evil.example", 403), ("null", 403), ("http://127.0.0.1:8000", 200),
-                               ("https://notebook.example", 200)]:  # fmt: skip
+        for origin, status in [("http://evil.example", 403), ("null", 403), ("http://[", 403),
+                               ("http://127.0.0.1:8000", 200), ("https://notebook.example", 200)]:  # fmt: skip
             assert client.post("/api/render", json=body, headers={"Origin": origin}).status_code == status
         with (
             pytest.raises(WebSocketDisconnect) as refused,

@@ -20,9 +20,10 @@ import websockets
 
 from renderer.core.errors import InputError
 from server.app import create_app
-from server.cli_serve import address, bind, configure
+from server.cli_serve import address, configure
 from server.protocol import unpack
 from server.settings import Settings
+from server.sockets import bind
 from tests.server.fake_session import FakeSession
 
 
