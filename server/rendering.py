@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import logging
-from collections.abc import Awaitable
+from collections.abc import Awaitable, Mapping
 from typing import Any, TypeVar
 
 from starlette.requests import Request
@@ -89,12 +89,22 @@ async def _unless(left: asyncio.Task[None], work: Awaitable[T]) -> T:
     raise Cancelled("the client left before the picture was drawn")
 
 
+def first_preset(scene: Mapping[str, Any]) -> str | None:
+    """The preset with which a scene opens, or None where it has none.
+
+    Args:
+        scene: one entry of `scenes()`.
+    """
+    presets = scene["presets"]
+    return str(presets[0]["name"]) if presets else None
+
+
 async def warm_up(hub: Hub) -> None:
-    """Precompute the first scene's default state and compile its programs, so that the first visitor need not wait."""
+    """Precompute the first scene's first preset and compile its programs, so that the first visitor need not wait."""
     session = hub.session
     try:
-        scene = str(session.scenes()[0]["name"])
-        state = await hub.call(session.state, scene, None, {"quality.kind": "draft"})
+        scene = session.scenes()[0]
+        state = await hub.call(session.state, str(scene["name"]), first_preset(scene), {"quality.kind": "draft"})
         preparation = await hub.call(session.prepare, state)
         try:
             await asyncio.wrap_future(preparation.future)

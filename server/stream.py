@@ -24,6 +24,7 @@ from server.live import Live
 from server.pace import Allowance
 from server.painter import Painter
 from server.problems import said
+from server.rendering import first_preset
 
 WRONG_PROTOCOL = 4400
 TOO_MANY = 1013
@@ -157,17 +158,18 @@ class Stream:
         self._live = Live(self._hub, painter, self._tell, self._spawn, state)
 
     async def _first_state(self, message: protocol.Hello) -> BaseModel:
-        """The state asked for; where it is refused, say so and open with the scene's default."""
+        """The state asked for, else the scene's first preset; where it is refused, say so and open with that."""
         session = self._hub.session
-        scenes = [str(scene["name"]) for scene in session.scenes()]
-        wanted = message.scene or str((message.state or {}).get("scene") or scenes[0])
+        firsts = {str(scene["name"]): first_preset(scene) for scene in session.scenes()}
+        scene = message.scene or str((message.state or {}).get("scene") or next(iter(firsts)))
         try:
             if message.state is not None:
                 return session.validate(message.state)
-            return session.state(wanted, message.preset)
+            return session.state(scene, message.preset or firsts.get(scene))
         except UmbrageError as failure:
             await self._refuse(failure)
-            return session.state(wanted if wanted in scenes else scenes[0])
+            known = scene if scene in firsts else next(iter(firsts))
+            return session.state(known, firsts[known])
 
     def _spawn(self, work: Coroutine[Any, Any, None]) -> None:
         task: asyncio.Task[None] = asyncio.create_task(self._guard(work))

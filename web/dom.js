@@ -84,6 +84,11 @@ export function perFrame(work) {
   };
 }
 
+/** Write a text where it differs: even the same text written again costs the page a layout. */
+export function say(node, text) {
+  if (node.textContent !== text) node.textContent = text;
+}
+
 /** True where the person asked their system for less motion. */
 export function reducedMotion() {
   return matchMedia("(prefers-reduced-motion: reduce)").matches;

@@ -12,8 +12,8 @@ export function humanise(name) {
 
 /** Controls of every field of `node` under `path`; `refresh` brings them up to date with a document. */
 export class Form {
-  constructor(context) {
-    this.context = context;
+  constructor(context, path = null) {
+    Object.assign(this, { context, path });
     this.parts = [];
     this.root = el("div", { class: "form" });
   }

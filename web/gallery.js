@@ -1,7 +1,7 @@
 // Scenes and presets as a strip of real thumbnails, drawn by the server when the strip is first opened.
 
 import * as api from "./api.js";
-import { el } from "./dom.js";
+import { el, say } from "./dom.js";
 import { humanise } from "./form.js";
 import { same } from "./document.js";
 
@@ -37,8 +37,8 @@ export class Gallery {
     if (!scene || !document) return;
     const shown = (state) => ({ ...state, quality: null });
     const match = Object.values(scene.presets).find((preset) => same(shown(preset.document), shown(document)));
-    this.button.querySelector(".scene-name").textContent = scene.title;
-    this.button.querySelector(".preset-name").textContent = match?.title ?? "own view";
+    say(this.button.querySelector(".scene-name"), scene.title);
+    say(this.button.querySelector(".preset-name"), match?.title ?? "own view");
   }
 
   build() {

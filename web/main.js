@@ -128,10 +128,12 @@ async function pasted() {
   }
 }
 
+let stale = false;
 const refresh = perFrame(() => {
   if (!store.document || !store.scene) return;
-  panels.refresh();
-  sunBar.refresh();
+  panels.refresh(stale);
+  sunBar.refresh(stale);
+  stale = false;
   tools.undo.disabled = !store.past.length;
   tools.redo.disabled = !store.future.length;
 });
@@ -164,7 +166,10 @@ function assemble() {
 async function start() {
   theme.start();
   assemble();
-  store.addEventListener("change", refresh);
+  store.addEventListener("change", ({ detail }) => {
+    stale ||= detail.source === "server" || detail.source === "scene";
+    refresh();
+  });
   screen.addEventListener("size", () => link.send({ type: "resize", width: screen.width, height: screen.height }));
   link.addEventListener("open", (event) => opened(event).catch((error) => notices.toast(error.message, "refusal")));
   link.addEventListener("message", message);

@@ -16,6 +16,7 @@ export class Panels {
     Object.assign(this, { root, hintRoot, store, aspect, askFile });
     this.controls = new Map();
     this.parts = [];
+    this.shown = new Map();
     store.addEventListener("scene", () => this.build());
   }
 
@@ -49,6 +50,7 @@ export class Panels {
   build() {
     const { scene, schema } = this.store;
     this.controls.clear();
+    this.shown.clear();
     const context = this.context();
     const fields = new Map(schema.fields(schema.root));
     const slots = scene.slots.filter((slot) => fields.has(slot.name)).map((slot) => new SlotPicker(context, slot, fields.get(slot.name)));
@@ -70,19 +72,26 @@ export class Panels {
   }
 
   section(context, name, node, sort) {
-    const part = sort === "union" ? new UnionPart(context, name, node, { titled: false }) : new Form(context);
+    const part = sort === "union" ? new UnionPart(context, name, node, { titled: false }) : new Form(context, name);
     if (sort === "object") part.addFields(name, node);
     this.parts.push(part);
     return this.fold(node.title ?? humanise(name), name === "view", part.root);
   }
 
   fold(title, open, ...children) {
-    return el("details", { class: "fold", open }, el("summary", {}, el("h3", { text: title })), el("div", { class: "fold-body" }, children));
+    return el("details", { class: "fold", open, on: { toggle: () => this.refresh(false) } }, el("summary", {}, el("h3", { text: title })), el("div", { class: "fold-body" }, children));
   }
 
-  refresh() {
-    if (!this.store.document || !this.store.schema) return;
-    for (const part of this.parts) part.refresh(this.store.document);
+  /** Bring the controls up to date: all of them, or those of the fields that changed and that are unfolded. */
+  refresh(all = true) {
+    const { document } = this.store;
+    if (!document || !this.store.schema) return;
+    for (const part of this.parts) {
+      const value = part.path ? document[part.path] : document;
+      if (!all && (value === this.shown.get(part) || part.root.closest("details:not([open])"))) continue;
+      this.shown.set(part, value);
+      part.refresh(document);
+    }
   }
 
   /** One quiet line at the foot of the panel: what the control under the pointer or the focus means. */

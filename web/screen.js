@@ -34,15 +34,14 @@ export class Screen extends EventTarget {
     this.dispatchEvent(new Event("size"));
   }
 
+  /** Copy a picture into its canvas, which takes the picture's size: the compositor stretches it at no cost of ours. */
   draw(stream, bitmap) {
     const canvas = this.canvases[stream];
-    const context = this.contexts[stream];
-    if (canvas.width !== this.width || canvas.height !== this.height) {
-      canvas.width = this.width;
-      canvas.height = this.height;
-      context.imageSmoothingQuality = "medium";
+    if (canvas.width !== bitmap.width || canvas.height !== bitmap.height) {
+      canvas.width = bitmap.width;
+      canvas.height = bitmap.height;
     }
-    context.drawImage(bitmap, 0, 0, this.width, this.height);
+    this.contexts[stream].drawImage(bitmap, 0, 0);
     if (stream === 0 && !this.drawnOnce) {
       this.drawnOnce = true;
       this.root.dataset.drawn = "yes";

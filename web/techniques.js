@@ -7,7 +7,7 @@ import { valueAt } from "./document.js";
 /** The picker of one slot. */
 export class SlotPicker {
   constructor(context, slot, node) {
-    Object.assign(this, { context, slot });
+    Object.assign(this, { context, slot, path: slot.name });
     this.union = new UnionPart(context, slot.name, node, { picker: false });
     this.name = freshId("slot");
     this.list = freshId("techniques");

@@ -1,6 +1,6 @@
 // The bar at the bottom: time of day with sunrise and sunset, play, date and place; the dome beside it always agrees.
 
-import { el, freshId, icon, iconButton } from "./dom.js";
+import { el, freshId, icon, iconButton, say } from "./dom.js";
 import { UnionPart } from "./form.js";
 import { clock, compass, Days, Dome, minutesOf } from "./sun.js";
 
@@ -123,9 +123,10 @@ export class SunBar {
     this.play.setAttribute("aria-pressed", String(pressed));
   }
 
-  async refresh() {
+  async refresh(all = true) {
     const { document } = this.store;
-    if (!document || !this.union) return;
+    if (!document || !this.union || !all && document.sun === this.shown) return;
+    this.shown = document.sun;
     this.draw();
     const wanted = this.last;
     const day = await this.days.get(wanted).catch(() => null);
@@ -140,8 +141,8 @@ export class SunBar {
     this.minutes = free ? (this.day?.nearest(sun) ?? 720) : minutesOf(sun.time);
     const placed = free ? sun : (this.day?.at(this.minutes) ?? null);
     this.root.classList.toggle("free", free);
-    this.clock.textContent = free ? "by hand" : sun.time.slice(0, 5);
-    this.note.textContent = placed ? `${compass(placed.azimuth)} ${placed.azimuth.toFixed(0)}°, ${placed.elevation.toFixed(1)}° high` : "";
+    say(this.clock, free ? "by hand" : sun.time.slice(0, 5));
+    say(this.note, placed ? `${compass(placed.azimuth)} ${placed.azimuth.toFixed(0)}°, ${placed.elevation.toFixed(1)}° high` : "");
     if (!this.range.matches(":active")) this.range.value = this.minutes;
     this.range.setAttribute("aria-valuetext", free ? "sun placed by hand" : sun.time.slice(0, 5));
     if (placed) this.dome.show(placed, this.day);
@@ -149,7 +150,7 @@ export class SunBar {
     const { date, latitude, longitude } = this.last;
     if (this.date !== window.document.activeElement) this.date.value = date;
     const place = `${Math.abs(latitude).toFixed(2)}° ${latitude < 0 ? "S" : "N"}, ${Math.abs(longitude).toFixed(2)}° ${longitude < 0 ? "W" : "E"}`;
-    this.placeText.textContent = place;
+    say(this.placeText, place);
     this.union.refresh(this.store.document);
   }
 
@@ -157,7 +158,7 @@ export class SunBar {
     for (const [mark, minutes, word] of [[this.rise, this.day?.sunrise, "↑"], [this.set, this.day?.sunset, "↓"]]) {
       mark.hidden = minutes === null || minutes === undefined;
       if (mark.hidden) continue;
-      mark.textContent = `${word} ${clock(minutes).slice(0, 5)}`;
+      say(mark, `${word} ${clock(minutes).slice(0, 5)}`);
       mark.title = word === "↑" ? "Sunrise" : "Sunset";
       mark.style.setProperty("--at", minutes / LAST_MINUTE);
     }

@@ -130,7 +130,7 @@ def test_a_hello_with_a_wrong_state_is_told_and_opens_the_default(
         talk = Talk(socket)
         talk.send(**{**hello, **change})
         assert talk.until("error")["field"] in ("brightness", "scene", "preset")
-        assert talk.until("welcome")["state"]["brightness"] == 0.5
+        assert talk.until("welcome")["state"]["brightness"] == 0.75, "its first preset"
         talk.until("idle")
 
 

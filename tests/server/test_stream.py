@@ -16,7 +16,7 @@ def test_a_hello_is_welcomed_refined_and_then_there_is_silence(client: TestClien
         talk.send(**hello)
         welcome = talk.until("welcome")
         assert welcome["protocol"] == 1
-        assert welcome["state"] == FakeState().model_dump(mode="json")
+        assert welcome["state"] == FakeState(brightness=0.75).model_dump(mode="json"), "its first preset"
         assert welcome["limits"]["max_side"] == 4096
         assert welcome["gl"] == {"renderer": "fake", "software": True}
         assert talk.until("idle")["samples"] == 64
@@ -25,7 +25,7 @@ def test_a_hello_is_welcomed_refined_and_then_there_is_silence(client: TestClien
         assert headers[-1].codec == "png"
         assert headers[-1].converged
         assert {header.codec for header in headers[:-1]} == {"jpeg"}
-        assert np.array_equal(pixels(talk.frames[-1][1]), paint(FakeState(), 64, 48))
+        assert np.array_equal(pixels(talk.frames[-1][1]), paint(FakeState(brightness=0.75), 64, 48))
         assert talk.silent(0.3)
 
 
