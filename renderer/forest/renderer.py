@@ -185,7 +185,7 @@ class ForestRenderer:
         values: dict[str, Any],
         textures: dict[str, AnyTexture],
     ) -> AnyTexture:
-        """Where the rays of each block of pixels begin; the same until the camera or the ground changes."""
+        """Where the rays of each block of pixels begin; the same until the camera, the ground or the trees change."""
 
         def draw() -> dict[str, Target]:
             found = dict(textures)
@@ -196,7 +196,8 @@ class ForestRenderer:
                 found["scout"] = target.texture
             return targets
 
-        made = self._moment.get(("scout", state.camera, size, baked["terrain"].key), draw)[f"{SCOUT_BLOCKS[-1]}"]
+        key = ("scout", state.camera, size, baked["terrain"].key, baked["pattern"].key)
+        made = self._moment.get(key, draw)[f"{SCOUT_BLOCKS[-1]}"]
         assert isinstance(made, Target)
         return made.texture
 
