@@ -14,6 +14,7 @@ from renderer.core.params import merge, validate
 from renderer.core.registry import techniques
 from renderer.core.technique import Arrays, Bake, BakedArrays
 from renderer.forest.pattern_mips import mips
+from renderer.forest.presence import safe_distance
 from renderer.forest.state import ForestState
 from renderer.forest.tiles import tile_table
 from renderer.forest.world_scale import CELL, NODES, VOXEL
@@ -80,6 +81,11 @@ def state(**patch: Any) -> ForestState:
     """A forest's state: defaults, without sky behind it, changed by a merge patch."""
     given = {"view": {"background": "none"}, "ground": {"albedo": list(GROUND), "tint_strength": 0.0}}
     return validate(ForestState, merge(merge(ForestState().model_dump(mode="json"), given), patch))
+
+
+def merged(patch: dict[str, Any], more: dict[str, Any]) -> ForestState:
+    """The state of a patch with another one over it."""
+    return validate(ForestState, merge(state(**patch).model_dump(mode="json"), more))
 
 
 def sun(azimuth: float, elevation: float) -> dict[str, Any]:
@@ -153,6 +159,7 @@ def grove_pattern(arguments: dict[str, Any], inputs: dict[str, Arrays], progress
                                                                 axis=-1), normal[here])
         anchor[here] = np.where(near[..., None] | full[..., None],
                                 np.concatenate([np.clip(np.rint(feet), 0, 255), 0 * feet], axis=-1), anchor[here])
+    anchor[..., 2] = safe_distance(colour[..., 3] > 0)
     level = {"colour": colour, "normal": normal, "anchor": anchor}
     coarser = {f"{name}_{n}": array for n, given in enumerate(mips(level), 1) for name, array in given.items()}
     return {**level, **coarser, "tile": tile_table(), "trees": np.zeros((0, 6), np.float32)}
