@@ -16,6 +16,7 @@ from renderer.core.errors import LimitError
 from server.facade import RenderSession
 from server.jobs import Jobs
 from server.metrics import Metrics
+from server.pace import Movers
 from server.problems import Busy
 from server.settings import Settings
 
@@ -38,6 +39,7 @@ class Hub:
         self.workers = ThreadPoolExecutor(4, "work")
         self.jobs = Jobs(settings, self.metrics)
         self.streams: set[Any] = set()
+        self.movers = Movers()
         self._admitted = 0
         self.thumbnails: dict[str, bytes] = {}
         self.thumbnail_locks: dict[str, asyncio.Lock] = {}

@@ -15,7 +15,8 @@ from renderer.core.errors import InputError, UmbrageError
 from renderer.core.params import merge
 from server import protocol
 from server.hub import Hub
-from server.painter import Painter, Pane
+from server.painter import Painter
+from server.pane import Pane
 from server.preparing import Preparer, Wish
 from server.problems import said
 

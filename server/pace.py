@@ -5,12 +5,16 @@ from __future__ import annotations
 import math
 import statistics
 from collections import deque
+from typing import Any
+from weakref import WeakKeyDictionary
 
 LOWEST_SCALE = 0.5
 STEPS = 16
 """Scales are sixteenths: a renderer's targets are not made anew for every small change."""
 HEADROOM = 0.9
 """A larger scale must leave a tenth of the frame time free, or the scale would swing between two steps."""
+MOVING_S = 0.3
+"""A view counts as moving for so long after a picture of its movement."""
 REMEMBERED = 3
 """The cost is the median of three frames: one slow frame (a compilation) costs no resolution, two do."""
 
@@ -34,6 +38,11 @@ class ScaleController:
         """Linear scale of the next moving frame, in [0.5, 1], a multiple of 1/16."""
         return self._scale
 
+    @property
+    def expected_ms(self) -> float | None:
+        """What a picture at full resolution is expected to cost [ms]; None before the first."""
+        return statistics.median_low(self._full) if self._full else None
+
     def observe(self, cost_ms: float, scale: float) -> None:
         """Learn from a frame.
 
@@ -52,6 +61,21 @@ class ScaleController:
     def forget(self) -> None:
         """Drop what was learnt: the canvas has another size."""
         self._full.clear()
+
+
+class Movers:
+    """Which views move: those that only refine their picture let them go first."""
+
+    def __init__(self) -> None:
+        self._moved: WeakKeyDictionary[Any, float] = WeakKeyDictionary()
+
+    def note(self, view: Any, now: float) -> None:
+        """A view drew a picture of a movement at time `now` [s]."""
+        self._moved[view] = now
+
+    def others(self, view: Any, now: float) -> bool:
+        """Whether any other view moved just before `now` [s]."""
+        return any(now - at < MOVING_S for other, at in self._moved.items() if other is not view)
 
 
 def scaled(width: int, height: int, scale: float) -> tuple[int, int]:

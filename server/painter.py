@@ -10,75 +10,31 @@ import asyncio
 import logging
 import time
 from collections.abc import Awaitable, Callable
-from dataclasses import dataclass
-from typing import Any, Literal
 
 from pydantic import BaseModel
 
 from server import facade
 from server.encode import MOVING_QUALITY, RESTING_QUALITY, encode
 from server.hub import Hub
-from server.pace import ScaleController, scaled
+from server.pace import LOWEST_SCALE, ScaleController, scaled
+from server.pane import Pane, Task
 from server.problems import said
 from server.protocol import Codec, FrameHeader, Idle, Refusal, pack
 
 log = logging.getLogger("umbrage")
 IN_FLIGHT = 2
-HELD_S = 0.150
-"""While a pointer is held, the view moves until no change came for this long (protocol 1)."""
+HELD_S = 0.090
+"""While a pointer is held, the view moves until no change came for this long."""
 RESTED_S = 0.060
 """Without a pointer held, this long: a full picture must follow the last change within 0.15 s."""
+PATIENCE = 2.0
+"""Changes come no faster than pictures: they are waited for during so many times the last one, however slow it was."""
+PREVIEW_MS = 100.0
+"""A picture that takes longer is shown coarsely first."""
+COURTESY = 4.0
+"""While another view moves, a picture is refined for a fifth of the time only."""
 SMALL_PIXELS = 512 * 512
 """Up to here the lossless picture is quick enough to be the first one at rest."""
-Key = tuple[int, int, int]
-
-
-@dataclass
-class Pane:
-    """One stream of pictures: 0 the state, 1 what it is compared with.
-
-    Attributes:
-        serial: number of the state shown, so that equal states share their samples.
-        version: version of the document last accepted for it.
-        drawn: serial, width and height of `frame`.
-        shown: version and size of the last picture sent; `sent` its samples.
-        final: version and size of the last lossless picture sent.
-    """
-
-    index: Literal[0, 1]
-    view: facade.View
-    state: Any = None
-    serial: int = 0
-    version: int = 0
-    frame: facade.Frame | None = None
-    drawn: Key | None = None
-    shown: Key | None = None
-    sent: int = 0
-    final: Key | None = None
-
-    def accept(self, state: Any, version: int) -> None:
-        """Show a prepared state from now on."""
-        if self.state is None or state != self.state:
-            self.serial += 1
-        self.state = state
-        self.version = version
-
-
-@dataclass(frozen=True)
-class Task:
-    """One thing to do for a pane, as things stood when it was chosen.
-
-    Attributes:
-        key: whose samples it adds to: serial of the state, width and height [px].
-        target: what it shows: version of the document, width and height [px].
-    """
-
-    pane: Pane
-    state: Any
-    scale: float
-    key: Key
-    target: Key
-    moving: bool
 
 
 class Painter:
@@ -112,6 +68,8 @@ class Painter:
         self._timer: asyncio.TimerHandle | None = None
         self._held = False
         self._touched = -1e9
+        self._coarse_s = 0.0
+        self._pause_until = -1e9
         self._turn = 0
         self._sequence = 0
         self._last_sent = 0
@@ -171,27 +129,47 @@ class Painter:
                 delivery.cancel()
 
     def _moving_until(self) -> float:
-        return self._touched + (HELD_S if self._held else RESTED_S)
+        return self._touched + max(HELD_S if self._held else RESTED_S, PATIENCE * self._coarse_s)
 
     def _next(self) -> Task | None:
         """The next thing to do, or None where nothing is to be done or the client is behind."""
         if len(self._unacknowledged) >= IN_FLIGHT:
             return None
-        moving = time.monotonic() < self._moving_until()
-        scale = self._controller.scale if moving else 1.0
-        width, height = scaled(self.width, self.height, scale)
+        now = time.monotonic()
+        moving = now < self._moving_until()
         for step in range(len(self.panes)):
             pane = self.panes[(self._turn + step) % len(self.panes)]
-            target = (pane.version, width, height)
-            done = pane.shown is not None and pane.shown[0] == pane.version if moving else pane.final == target
-            if pane.state is not None and not done:
+            known = pane.shown is not None and pane.shown[0] == pane.version
+            scale = self._scale(pane, known, moving)
+            width, height = scaled(self.width, self.height, scale or 1.0)
+            key, target = (pane.serial, width, height), (pane.version, width, height)
+            done = known if moving else pane.final == target
+            refining = not moving and pane.shown == target
+            if pane.state is not None and not done and not (refining and now < self._pause_until):
                 self._turn = (pane.index + 1) % len(self.panes)
-                return Task(pane, pane.state, scale, (pane.serial, width, height), target, moving)
+                return Task(pane, pane.state, scale or 1.0, key, target, coarse=scale is not None)
         return None
+
+    def _scale(self, pane: Pane, known: bool, moving: bool) -> float | None:
+        """Linear scale of a coarse picture, or None where the full one is due.
+
+        Args:
+            pane: to be drawn.
+            known: whether its version was shown in any form.
+            moving: whether the view moves.
+        """
+        if moving:
+            return self._controller.scale
+        if known or pane.drawn == (pane.serial, self.width, self.height):
+            return None
+        expected = self._controller.expected_ms
+        if expected is None:
+            return LOWEST_SCALE if self.width * self.height > SMALL_PIXELS else None
+        return LOWEST_SCALE if expected > PREVIEW_MS else None
 
     async def _rest(self) -> None:
         """Nothing to do now: look again when the movement is over, or say so once."""
-        wait = self._moving_until() - time.monotonic()
+        wait = max(self._moving_until(), self._pause_until) - time.monotonic()
         if wait > 0:
             if self._timer is not None:
                 self._timer.cancel()
@@ -210,7 +188,7 @@ class Painter:
     async def _do(self, task: Task) -> None:
         """Draw one sample (or take the picture that is already there), and send it where it is worth sending."""
         pane = task.pane
-        fresh = pane.drawn == task.key and pane.frame is not None and (pane.frame.converged or task.moving)
+        fresh = pane.drawn == task.key and pane.frame is not None and (pane.frame.converged or task.coarse)
         if not fresh and not await self._draw(task):
             return
         frame = pane.frame
@@ -218,7 +196,7 @@ class Painter:
             return
         first = pane.shown != task.target
         preview = first and self._final_codec == "png" and task.key[1] * task.key[2] > SMALL_PIXELS
-        if task.moving:
+        if task.coarse:
             self._deliver(task, frame, self._moving_codec, MOVING_QUALITY)
         elif frame.converged and not preview:
             pane.final = task.target
@@ -246,6 +224,11 @@ class Painter:
         seconds = time.perf_counter() - start
         self._hub.metrics.render.observe(seconds)
         self._controller.observe((seconds * 1e3 + self._encode_ms) * len(self.panes), task.scale)
+        if task.coarse:
+            self._coarse_s = seconds * len(self.panes)
+            self._hub.movers.note(self, time.monotonic())
+        elif self._hub.movers.others(self, time.monotonic()):
+            self._pause_until = time.monotonic() + COURTESY * seconds
         pane.frame, pane.drawn = frame, task.key
         return True
 

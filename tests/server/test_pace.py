@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import pytest
 
-from server.pace import Allowance, ScaleController, scaled
+from server.pace import Allowance, Movers, ScaleController, scaled
 
 
 def settled(full_ms: float, frame_ms: float) -> list[float]:
@@ -43,6 +43,27 @@ def test_the_scale_comes_back_when_the_scene_gets_cheap() -> None:
     for _ in range(3):
         controller.observe(10 * 0.25, 0.5)
     assert controller.scale == 1.0
+
+
+def test_the_expected_cost_is_that_of_a_full_picture() -> None:
+    controller = ScaleController(28)
+    assert controller.expected_ms is None
+    controller.observe(20, 0.5)
+    assert controller.expected_ms == pytest.approx(80)
+
+
+def test_a_view_counts_as_moving_for_a_moment_and_only_to_others() -> None:
+    class View:
+        """Stands for a live view."""
+
+    movers, one, two = Movers(), View(), View()
+    movers.note(one, 10.0)
+    assert movers.others(two, 10.2)
+    assert not movers.others(one, 10.2)
+    assert not movers.others(two, 10.4)
+    movers.note(one, 20.0)
+    del one
+    assert not movers.others(two, 20.1), "a view that left moves no more"
 
 
 def test_a_size_is_rounded_and_never_empty() -> None:

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import time
 from typing import Any
 
 import numpy as np
@@ -130,12 +131,62 @@ def test_a_resize_redraws_at_the_new_size(client: TestClient, hello: dict[str, A
         assert talk.silent(0.1)
 
 
-def test_a_large_picture_comes_first_as_jpeg_and_then_without_loss(client: TestClient, hello: dict[str, Any]) -> None:
+def test_a_large_picture_comes_coarse_at_first_then_as_jpeg_and_then_without_loss(
+    client: TestClient, hello: dict[str, Any]
+) -> None:
     with client.websocket_connect("/api/session") as socket:
         talk = Talk(socket)
         talk.send(**{**hello, "width": 640, "height": 480, "state": {"scene": "fake", "quality": {"kind": "draft"}}})
         talk.until("idle")
-        assert [header.codec for header, _ in talk.frames] == ["jpeg", "png"]
+        seen = [(header.codec, header.scale, header.width) for header, _ in talk.frames]
+        assert seen == [("jpeg", 0.5, 320), ("jpeg", 1.0, 640), ("png", 1.0, 640)]
+
+
+def test_a_slow_picture_is_shown_coarsely_first_and_a_quick_one_is_not(
+    client: TestClient, session: FakeSession, hello: dict[str, Any]
+) -> None:
+    with client.websocket_connect("/api/session") as socket:
+        talk = Talk(socket)
+        talk.send(**{**hello, "width": 64, "height": 64, "state": {"scene": "fake", "quality": {"kind": "draft"}}})
+        talk.until("idle")
+        assert [header.scale for header, _ in talk.frames] == [1.0], "a small canvas shows its first picture whole"
+        session.draw_seconds = 0.2
+        talk.send(type="resize", width=60, height=60)
+        talk.until("idle")
+        talk.frames.clear()
+        session.bake_gate.clear()
+        talk.send(type="patch", patch={"density": 5}, id=1)
+        talk.until("progress")
+        time.sleep(0.5)  # the movement that a patch begins is over long before its precomputation
+        session.bake_gate.set()
+        talk.until("idle")
+        assert [header.scale for header, _ in talk.frames] == [0.5, 1.0]
+
+
+def test_while_another_view_moves_a_picture_is_refined_a_fifth_of_the_time(
+    client: TestClient, session: FakeSession, hello: dict[str, Any]
+) -> None:
+    def samples_during(moving: bool) -> int:
+        with client.websocket_connect("/api/session") as still, client.websocket_connect("/api/session") as busy:
+            refined, moved = Talk(still), Talk(busy)
+            refined.send(**{**hello, "state": {"scene": "fake", "quality": {"kind": "samples", "n": 4096}}})
+            moved.send(**{**hello, "state": {"scene": "fake", "quality": {"kind": "draft"}}})
+            moved.until("idle")
+            if moving:
+                moved.send(type="moving", active=True)
+            start, step = time.monotonic(), 0
+            before = len(session.drawn)
+            while time.monotonic() - start < 0.8:
+                step += 1
+                for talk in (refined, moved):
+                    talk.send(type="ack", sequence=10**6)  # all that was sent
+                if moving:
+                    moved.send(type="patch", patch={"brightness": 0.5 + (step % 40) / 100}, id=step)
+                time.sleep(0.02)
+            return sum(state.quality.kind == "samples" for state, *_ in session.drawn[before:])
+
+    session.draw_seconds = 0.005
+    assert samples_during(moving=True) < 0.5 * samples_during(moving=False)
 
 
 def test_a_client_without_png_ends_with_jpeg(client: TestClient, hello: dict[str, Any]) -> None:
