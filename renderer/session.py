@@ -55,6 +55,7 @@ class Session:
         self.assets = assets or AssetStore()
         self.gl = GLThread()
         self._workers = Workers(executor)
+        self._long = Workers(executor)  # of its own, or every view's bake would wait for whoever wants a reference
         self._painter = Painter(self.gl)
         self._loaded: OrderedDict[str, BakedArrays] = OrderedDict()
         self._lock = threading.Lock()
@@ -160,12 +161,14 @@ class Session:
         return paint(self.gl, self._painter, state, self._arrays(state), (width, height), samples, place, tell)
 
     def compute(self, bake: Bake, on_progress: Report | None = None) -> Arrays:
-        """The arrays of one bake, from the cache or from a worker process; blocks.
+        """The arrays of one bake that may take minutes, from the cache or from a worker process; blocks.
+
+        What views wait for is computed elsewhere meanwhile.
 
         Raises:
             Cancelled: by `on_progress`.
         """
-        return self._workers.run(bake, self.cache, on_progress).future.result()
+        return self._long.run(bake, self.cache, on_progress).future.result()
 
     def compare(
         self,
@@ -243,6 +246,7 @@ class Session:
 
     def close(self) -> None:
         """End the bakes, the views and the GL thread."""
+        self._long.close()
         self._workers.close()
         self.gl.close()
 
