@@ -69,17 +69,22 @@ PRESETS = {
     "noon": Preset(
         "Noon",
         "High sun over the whole valley.",
-        {"camera": _orbit((200, 200, 280), 2300, 140, 24), "sun": _sun(190, 62), "view": {"exposure": -7.6}},
+        {
+            "camera": _orbit((200, 200, 280), 2300, 140, 24),
+            "sun": _sun(190, 62),
+            "view": {"exposure": -7.4},
+            "filter": {"bias": 1.0},
+        },
     ),
     "low_sun": Preset(
         "Low sun",
         "Late afternoon: long shadows from tree to tree.",
-        {"camera": _orbit((1150, -300, 265), 650, 305, 15), "sun": _sun(255, 18), "view": {"exposure": -6.6}},
+        {"camera": _orbit((1150, -300, 265), 650, 305, 15), "sun": _sun(255, 18), "view": {"exposure": -6.2}},
     ),
     "valley_sunset": Preset(
         "Valley at sunset",
         "The ridge has taken the sun from the valley floor.",
-        {"camera": _orbit((1600, -900, 400), 1500, 268, 5), "sun": _sun(292, 9), "view": {"exposure": -5.2}},
+        {"camera": _orbit((1600, -900, 400), 1500, 268, 5), "sun": _sun(292, 9), "view": {"exposure": -4.9}},
     ),
     "forest_edge": Preset(
         "Forest edge",

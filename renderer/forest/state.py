@@ -120,6 +120,9 @@ class Ground(Model):
     tint_strength: float = param(
         0.35, label="Tree tint", help="How much one tree's colour differs from the next.", unit="ratio", ge=0, le=0.9
     )
+    patches: float = param(
+        0.2, label="Ground patches", help="How much the ground's brightness varies.", unit="ratio", ge=0, le=0.9
+    )
     map_seed: int = param(
         0, label="Map seed", help="Of the hash that lays the tiles.", cost="host", ge=0, le=2**31 - 1
     )

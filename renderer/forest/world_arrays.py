@@ -50,6 +50,7 @@ def world_arrays(state: ForestState, baked: Mapping[str, Arrays]) -> dict[str, A
         "seed": state.ground.map_seed,
         "tint_strength": state.ground.tint_strength,
         "ground_albedo": tuple(state.ground.albedo),
+        "patches": state.ground.patches,
         "e_sun": _triple(now.sun_irradiance),
         "e_sky": _triple(now.sky_irradiance),
         "sun": _triple(sun),

@@ -39,6 +39,9 @@ NOMINAL_ALBEDO = 0.1
 DEPTH_LIMIT = 9.2
 """Optical depth after which a march stops: a ten-thousandth of the light is left, and takes the colour of the rest."""
 
+SOIL = 0.37
+"""How much finer the patches of the ground are than the trees' variation of colour."""
+
 LIFT = 1e-3
 """Metres above the ground at which its shadow rays start, so that rounding does not make a facet shade itself."""
 
@@ -95,6 +98,7 @@ def _canopy_light(scene, switches, x, y, event, voxel, out):
 @njit(cache=True, nogil=True)
 def _ground_light(scene, switches, x, y, z, step, empty, share, voxel, total):
     """Add the light that bare ground sends up, times `share`."""
+    soil = 1.0 + scene.patches * tint(SOIL * x, SOIL * y)
     nx, ny, nz = ground_normal(scene, x, y)
     ambient = 1.0
     if bilinear(scene.cover, scene.cell, x, y) > 0.5:
@@ -109,7 +113,7 @@ def _ground_light(scene, switches, x, y, z, step, empty, share, voxel, total):
         seen = visibility(scene, switches, x, y, z + LIFT, step, mode, (0.0, 0.0), empty)
     for c in range(3):
         light = scene.e_sun[c] * facing * seen + scene.e_sky[c] * ambient
-        total[c] += share * scene.ground[c] / math.pi * light
+        total[c] += share * scene.ground[c] * soil / math.pi * light
 
 
 @njit(cache=True, nogil=True)

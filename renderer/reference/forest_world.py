@@ -50,6 +50,7 @@ class ForestWorld:
         seed: of the tiling's hash.
         tint_strength: of the colour change from tree to tree.
         ground_albedo: linear reflectance of bare ground.
+        patches: how much the ground's brightness varies from place to place.
         e_sun: irradiance on a plane facing the sun, W m-2, by channel.
         e_sky: irradiance of the sky on the horizontal.
         sun: unit vector to the sun.
@@ -76,6 +77,7 @@ class ForestWorld:
     sun: Colour3
     reach: float = 5e4
     background: Callable[[Floats], Floats] | None = None
+    patches: float = 0.0
 
     def __post_init__(self) -> None:
         """Refuse arrays that do not fit together.
@@ -126,6 +128,7 @@ class Scene(NamedTuple):
     tile: Bytes
     seed: int
     tint: float
+    patches: float
     ground: Floats
     e_sun: Floats
     e_sky: Floats
@@ -149,7 +152,7 @@ def prepare(world: ForestWorld) -> Scene:
         side=float(world.tile_side), voxel=float(world.voxel), colour=np.ascontiguousarray(world.colour),
         normal=np.ascontiguousarray(world.normal), anchor=np.ascontiguousarray(world.anchor),
         safe=_safe(world.colour[..., 3]), tile=np.ascontiguousarray(world.tile, np.uint8), seed=int(world.seed),
-        tint=float(world.tint_strength), ground=np.array(world.ground_albedo, np.float64),
+        tint=float(world.tint_strength), patches=float(world.patches), ground=np.array(world.ground_albedo, np.float64),
         e_sun=np.array(world.e_sun, np.float64), e_sky=np.array(world.e_sky, np.float64),
         sun=np.array(world.sun, np.float64), reach=float(world.reach))
 

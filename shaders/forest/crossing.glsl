@@ -13,6 +13,9 @@ float step_above(float gap, vec3 direction, vec3 ground) {
     return max(gap / max(terrain_steepness * run - direction.z, 1e-4), bent);
 }
 
+// A voxel's foot and another's are both within 8 m along each axis: nothing stands nearer than the next stand less that, and a texel.
+const float GLADE_REACH = 28.0;
+
 // Voxels that a ray crosses per metre, at most, along any axis of the sheared lattice.
 float voxel_rate(vec3 direction) {
     float run = length(direction.xy);

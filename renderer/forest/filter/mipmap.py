@@ -17,5 +17,5 @@ class Mipmap(ForestTechnique):
 
     kind: Literal["mipmap"] = "mipmap"
     bias: float = param(
-        0.0, label="Level bias", help="Added to the level; negative is sharper.", unit="", ge=-3, le=3, step=0.25
+        0.5, label="Level bias", help="Added to the level; negative is sharper.", unit="", ge=-3, le=3, step=0.25
     )

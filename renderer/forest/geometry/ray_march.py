@@ -17,7 +17,7 @@ class RayMarch(ForestTechnique):
 
     kind: Literal["ray_march"] = "ray_march"
     step: float = param(
-        1.0,
+        1.5,
         label="Step",
         help="Length of a step, in voxels of the level in use.",
         unit="voxel",
@@ -26,5 +26,5 @@ class RayMarch(ForestTechnique):
         step=0.125,
     )
     stop: float = param(
-        0.02, label="Early stop", help="Transmittance below which a ray ends.", unit="ratio", ge=0, le=0.2, step=0.005
+        0.1, label="Early stop", help="Transmittance below which a ray ends.", unit="ratio", ge=0, le=0.2, step=0.005
     )

@@ -33,7 +33,7 @@ class DepthShadowMap(ForestTechnique):
 
     kind: Literal["depth_shadow_map"] = "depth_shadow_map"
     resolution: Literal[512, 1024, 2048] = param(
-        1024, label="Resolution", help="Texels a side of the map.", unit="px", cost="host"
+        512, label="Resolution", help="Texels a side of the map.", unit="px", cost="host"
     )
     threshold: float = param(
         0.3,

@@ -4,9 +4,6 @@
 // Deviations: the step grows with the mip level; light is evaluated at one random level of opacity (events.glsl), not at every step;
 // each ray reads nearest voxels at its own offset, whose mean over rays is trilinear interpolation.
 
-// A voxel's foot and another's are both within 8 m along each axis: nothing stands nearer than the next stand less that, and a texel.
-const float GLADE_REACH = 28.0;
-
 // Formulas g: front to back, T *= 1 - alpha'; alpha' = 1 - (1 - alpha)^step, a step being that share of a voxel.
 void geometry_trace(vec3 origin, vec3 direction, float t, vec4 jitter, inout Event event) {
     float rate = voxel_rate(direction);
