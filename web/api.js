@@ -43,9 +43,10 @@ export async function render(state, width, height, type = "image/png") {
   return (await request("api/render", options)).blob();
 }
 
-/** Upload a file; resolves to what the server found in it. */
-export async function upload(file) {
+/** Upload a file, read with what `reading` says that it leaves unsaid; resolves to what the server found in it. */
+export async function upload(file, reading = {}) {
   const body = new FormData();
+  for (const [name, value] of Object.entries(reading)) body.append(name, typeof value === "string" ? value : JSON.stringify(value));
   body.append("file", file, file.name);
   return (await request("api/assets", { method: "POST", body })).json();
 }

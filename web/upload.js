@@ -4,19 +4,29 @@ import * as api from "./api.js";
 import { el } from "./dom.js";
 import { bytes } from "./overlay.js";
 import { humanise } from "./form.js";
+import { unitOf } from "./schema.js";
 
-/** Where in the state a file of `kind` may go: `{path, title, patch(asset)}` for every text field made for such a file. */
+const MENDED = { "holes = fill": { words: "Fill the holes from their rims", reading: { holes: "fill" } } };
+
+/**
+ * Where in the state a file of `kind` may go: `{path, title, reading, patch(asset, reading)}` for every text field made
+ * for such a file; `reading` is the schema of what the file may leave unsaid, where the state has a place for that.
+ */
 export function placesFor(schema, kind) {
   const found = [];
   for (const [name, node] of schema.fields(schema.root)) {
     const title = node.title ?? humanise(name);
     const add = (field, patch) => {
-      if ([name, field].includes(kind)) found.push({ path: `${name}.${field}`, title, patch });
+      if ([name, field].includes(kind)) found.push({ path: `${name}.${field}`, title, patch, reading });
     };
+    let reading = null;
     const sort = schema.sort(node);
     for (const member of sort === "union" ? schema.members(node).values() : []) {
+      reading = new Map(schema.fields(member)).get("reading") ?? null;
       for (const [field, inner] of schema.fields(member)) {
-        if (schema.isAsset(inner)) add(field, (asset) => ({ [name]: { ...schema.fresh(member), [field]: asset } }));
+        const fresh = () => schema.fresh(member);
+        const read = (said) => ("reading" in fresh() ? { reading: { ...fresh().reading, ...said } } : {});
+        if (schema.isAsset(inner)) add(field, (asset, said) => ({ [name]: { ...fresh(), ...read(said), [field]: asset } }));
       }
     }
     for (const [field, inner] of sort === "object" ? schema.fields(node) : []) {
@@ -50,36 +60,93 @@ export class Upload {
     this.input.click();
   }
 
-  async take(file) {
+  async take(file, reading = {}) {
     if (!file) return;
     this.notices.connection(`Checking ${file.name} (${bytes(file.size)}) …`);
     try {
-      const asset = await api.upload(file);
-      this.preview(file, asset);
+      this.preview(file, await api.upload(file, reading));
     } catch (error) {
-      this.notices.toast(`${file.name} was refused. ${error.message}`, "refusal");
+      const way = Object.keys(reading).length ? null : (error.errors ?? []).map(({ allowed }) => mendedBy(allowed)).find(Boolean);
+      if (way) this.offer(file, error.message, way);
+      else this.notices.toast(`${file.name} was refused. ${error.message}`, "refusal");
     } finally {
       this.notices.connection(null);
     }
   }
 
-  preview(file, { asset, kind, preview = {} }) {
-    const places = placesFor(this.store.schema, kind);
-    const rows = Object.entries({ kind, size: bytes(file.size), ...preview }).filter(([, value]) => value !== null && value !== "");
-    const use = places.map((place) => el("button", { type: "button", class: "wide", text: `Use for: ${place.title.toLowerCase()}`,
-      on: { click: () => this.apply(place, asset) } }));
-    const none = places.length ? null : el("p", { text: `This scene has no place for a file of this kind (${kind}).` });
-    this.dialog.querySelector("h2").textContent = file.name;
-    this.dialog.querySelector(".dialog-body").replaceChildren(
-      el("dl", { class: "costs" }, rows.flatMap(([name, value]) => [el("dt", { text: humanise(name) }), el("dd", { text: said(value) })])),
-      ...use, ...(none ? [none] : []));
-    this.dialog.showModal();
+  show(title, ...body) {
+    this.dialog.querySelector("h2").textContent = title;
+    this.dialog.querySelector(".dialog-body").replaceChildren(...body);
+    if (!this.dialog.open) this.dialog.showModal();
   }
 
-  apply(place, asset) {
-    this.store.change(place.patch(asset), "upload");
+  /** A file that was refused as it is, and could be read otherwise. */
+  offer(file, sentence, { words, reading }) {
+    const again = () => {
+      this.dialog.close();
+      this.take(file, reading);
+    };
+    this.show(file.name, el("p", { text: sentence }), el("button", { type: "button", class: "wide", text: words, on: { click: again } }));
+  }
+
+  preview(file, { asset, kind, preview = {}, reading = {} }) {
+    const { still_to_say: unsaid = "", ...facts } = preview;
+    const places = placesFor(this.store.schema, kind);
+    const rows = Object.entries({ kind, size: bytes(file.size), ...facts }).filter(([, value]) => value !== null && value !== "");
+    const asked = new Reading(this.store.schema, places.find((place) => place.reading)?.reading, unsaid);
+    const use = places.map((place) => el("button", { type: "button", class: "wide", text: `Use for: ${place.title.toLowerCase()}`,
+      on: { click: () => this.apply(place, asset, reading, asked) } }));
+    const none = places.length ? null : el("p", { text: `This scene has no place for a file of this kind (${kind}).` });
+    this.show(file.name,
+      el("dl", { class: "costs" }, rows.flatMap(([name, value]) => [el("dt", { text: humanise(name) }), el("dd", { text: said(value) })])),
+      ...asked.rows, ...use, ...(none ? [none] : []));
+  }
+
+  apply(place, asset, reading, asked) {
+    const values = asked.values();
+    if (values === null) return;
+    this.store.change(place.patch(asset, { ...reading, ...values }), "upload");
     this.dialog.close();
   }
+}
+
+/** Entries for what a file leaves unsaid: one a number, from the schema of its reading. */
+class Reading {
+  constructor(schema, node, unsaid) {
+    const known = new Map(node ? schema.fields(node) : []);
+    this.fields = unsaid.split(", ").filter((name) => known.has(name)).map((name) => {
+      const field = known.get(name);
+      const count = schema.sort(field) === "vector" ? field.prefixItems.length : 1;
+      const entries = Array.from({ length: count }, (_, number) => el("input", { type: "text", inputmode: "decimal", class: "entry",
+        autocomplete: "off", "aria-label": count > 1 ? `${field.title}, ${"xyz"[number]}` : field.title }));
+      return { name, field, entries };
+    });
+    this.error = el("p", { class: "field-error", role: "alert", hidden: true });
+    this.rows = this.fields.map(({ field, entries }) => el("div", { class: "control" }, el("div", { class: "control-head" },
+      el("span", { class: "label", text: field.title }), el("span", { class: "number" }, ...entries, el("span", { class: "unit", text: unitOf(field) })))));
+    if (this.rows.length) this.rows.push(this.error);
+  }
+
+  /** What was entered, or null where something is missing, which is then said. */
+  values() {
+    const found = {};
+    for (const { name, field, entries } of this.fields) {
+      const numbers = entries.map((entry) => Number(entry.value.trim().replace(",", ".").replace("−", "-") || NaN));
+      if (!numbers.every(Number.isFinite)) {
+        this.error.textContent = `${field.title}: the file does not say it. ${field.description ?? ""}`;
+        this.error.hidden = false;
+        entries[0].focus();
+        return null;
+      }
+      found[name] = numbers.length > 1 ? numbers : numbers[0];
+    }
+    return found;
+  }
+}
+
+/** The way to read a file that a refusal names, if there is one. */
+function mendedBy(allowed) {
+  return Object.entries(MENDED).find(([words]) => (allowed ?? "").includes(words))?.[1];
 }
 
 /** A fact of the preview in one line. */
