@@ -123,7 +123,7 @@ class Reading {
     });
     this.error = el("p", { class: "field-error", role: "alert", hidden: true });
     this.rows = this.fields.map(({ field, entries }) => el("div", { class: "control" }, el("div", { class: "control-head" },
-      el("span", { class: "label", text: field.title }), el("span", { class: "number" }, ...entries, el("span", { class: "unit", text: unitOf(field) })))));
+      el("span", { class: "label", text: field.title }), entries.map((entry) => el("span", { class: "number" }, entry, el("span", { class: "unit", text: unitOf(field) }))))));
     if (this.rows.length) this.rows.push(this.error);
   }
 
@@ -133,7 +133,7 @@ class Reading {
     for (const { name, field, entries } of this.fields) {
       const numbers = entries.map((entry) => Number(entry.value.trim().replace(",", ".").replace("−", "-") || NaN));
       if (!numbers.every(Number.isFinite)) {
-        this.error.textContent = `${field.title}: the file does not say it. ${field.description ?? ""}`;
+        this.error.textContent = `${field.title}: the file does not say it, so it must be entered.`;
         this.error.hidden = false;
         entries[0].focus();
         return null;
