@@ -19,7 +19,7 @@ float stand_towards_sun(vec2 xy) {
 }
 
 // Sun over the land's horizon and over the canopy's: the land hides it wholly, the canopy by its strength, for leaves let light through.
-float horizon_visibility(float land, float canopy) {
-    float over_land = horizon_lit(land, sun_elevation, min(shadow_softness, LAND_SOFTNESS));
-    return over_land * mix(1.0, horizon_lit(canopy, sun_elevation, shadow_softness), shadow_strength);
+float horizon_visibility(float land, float canopy, float eps, float strength) {
+    float over_land = horizon_lit(land, sun_elevation, min(eps, LAND_SOFTNESS));
+    return over_land * mix(1.0, horizon_lit(canopy, sun_elevation, eps), strength);
 }

@@ -13,5 +13,5 @@ float shadow_visibility(vec3 position, float h, vec2 uv) {
     vec2 canopy = textureLod(shadow_canopy, uv, 0.0).rg * stand_towards_sun(position.xy);
     float w = clamp((h - shadow_low) / (shadow_top - shadow_low), 0.0, 1.0);
     float land = textureLod(shadow_terrain, terrain_coordinate(position.xy), 0.0).r;
-    return horizon_visibility(land, mix(canopy.g, canopy.r, w));
+    return horizon_visibility(land, mix(canopy.g, canopy.r, w), shadow_softness, shadow_strength);
 }

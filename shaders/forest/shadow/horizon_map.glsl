@@ -8,5 +8,6 @@
 
 float shadow_visibility(vec3 position, float h, vec2 uv) {
     float canopy = textureLod(shadow_canopy, uv, 0.0).r * stand_towards_sun(position.xy);
-    return horizon_visibility(textureLod(shadow_terrain, terrain_coordinate(position.xy), 0.0).r, canopy);
+    float land = textureLod(shadow_terrain, terrain_coordinate(position.xy), 0.0).r;
+    return horizon_visibility(land, canopy, shadow_softness, shadow_strength);
 }
