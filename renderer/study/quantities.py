@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import csv
 import io
-import zipfile
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -17,6 +16,7 @@ from renderer.core.errors import AssetError, InputError, LimitError
 from renderer.core.params import Model, param
 from renderer.reference.horizon import horizon
 from renderer.world import sun as suns
+from renderer.world.arrays import read_npz
 from renderer.world.limits import DEFAULT_LIMITS
 from renderer.world.terrain import Terrain, default_terrain, load_terrain
 
@@ -155,15 +155,15 @@ def read_points(path: Path) -> np.ndarray:
 
 def _points_npz(path: Path) -> np.ndarray:
     try:
-        # numpy leaves a file that it opened and could not read to the garbage collector
-        with path.open("rb") as file, np.load(file, allow_pickle=False) as data:
-            if "row_col" in data:
-                return np.asarray(data["row_col"], np.float64)
-            return np.stack([np.asarray(data["row"], np.float64), np.asarray(data["col"], np.float64)], axis=1)
-    except (KeyError, ValueError, OSError, zipfile.BadZipFile, MemoryError):
-        raise AssetError(
-            "points", "the .npz is damaged or holds no points", "row_col (P, 2), or row and col (P,)"
-        ) from None
+        # A few megabytes of file may hold gigabytes of array: no more is unpacked than may be asked for at once.
+        data = read_npz(path, ("row_col", "row", "col"), RAYS * 16)
+        if "row_col" in data:
+            return np.asarray(data["row_col"], np.float64)
+        return np.stack([np.asarray(data["row"], np.float64), np.asarray(data["col"], np.float64)], axis=1)
+    except InputError as failure:
+        raise failure.at("points") from None
+    except (KeyError, ValueError):
+        raise AssetError("points", "the .npz holds no points", "row_col (P, 2), or row and col (P,)") from None
 
 
 def _points_csv(path: Path) -> np.ndarray:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import io
 import json
+import zipfile
 from pathlib import Path
 
 import numpy as np
@@ -124,3 +126,13 @@ def test_other_refusals(valley: Path, tmp_path: Path) -> None:
             door.measure("horizon", {}, {"terrain": valley, "points": bad})
     with pytest.raises(AssetError, match="points"):
         door.measure("horizon", {}, {"points": tmp_path / "absent.npz"})
+
+
+def test_points_that_unpack_to_gigabytes_are_refused_unread(valley: Path, tmp_path: Path) -> None:
+    header, bomb = io.BytesIO(), tmp_path / "bomb.npz"
+    claim = {"descr": "<f8", "fortran_order": False, "shape": (100_000_000, 2)}
+    np.lib.format.write_array_header_1_0(header, claim)
+    with zipfile.ZipFile(bomb, "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr("row_col.npy", header.getvalue() + bytes(1000))
+    with pytest.raises(LimitError, match=r"points: row_col claims 1,600,000,000 bytes"):
+        door.measure("horizon", {}, {"terrain": valley, "points": bomb})
