@@ -30,6 +30,7 @@ QUIET = lambda share, words: None  # noqa: E731
 
 
 def state(**patch: Any) -> ForestState:
+    patch["ground"] = {"patches": 0.0, **patch.get("ground", {})}  # an even meadow has a closed form
     made = validate(ForestState, {"scene": "forest", "camera": DOWN, **patch})
     assert isinstance(made, ForestState)
     return made
