@@ -10,7 +10,7 @@ import pytest
 from renderer.core.errors import ShaderError
 from renderer.core.params import uniform_declarations
 from renderer.core.registry import techniques
-from renderer.forest.program import WORLD_DECLARATIONS, scout_source, shade_source, trace_source
+from renderer.forest.program import SCOUT_BLOCKS, WORLD_DECLARATIONS, scout_source, shade_source, trace_source
 from renderer.forest.state import SLOTS, ForestState, Ground
 from renderer.gl.context import GL
 from renderer.gl.program import declared, unused
@@ -102,5 +102,6 @@ def test_an_error_in_a_technique_names_its_line(thread: GLThread, spoil: Callabl
     assert failure.value.line == 7
 
 
-def test_the_scout_compiles(thread: GLThread) -> None:
-    thread.call(lambda gl: gl.programs.get(assemble(["stages/fullscreen.vert"]), scout_source()))
+@pytest.mark.parametrize("number", range(len(SCOUT_BLOCKS)))
+def test_every_scout_compiles(thread: GLThread, number: int) -> None:
+    thread.call(lambda gl: gl.programs.get(assemble(["stages/fullscreen.vert"]), scout_source(number)))

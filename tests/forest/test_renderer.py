@@ -66,7 +66,7 @@ def test_above_the_land_there_is_the_sky_or_nothing(paint: Paint) -> None:
 def test_no_pixel_is_brighter_than_its_matter_can_be(paint: Paint, kind: str) -> None:
     """Energy: radiance <= albedo / pi (E_sun + E_sky), the albedo with the strongest tint, whatever the sun."""
     for sun in ((245, 33), (20, 3)) if kind != "depth_shadow_map" else ((245, 33),):
-        shadow = worlds.technique("shadow", kind, **({"sectors": 16} if kind == "horizon_map" else {}))
+        shadow = worlds.technique("shadow", kind)
         made = worlds.state(**{**truth.SCENE, **worlds.PLAIN, "shadow": shadow, "sun": worlds.sun(*sun)})
         seen = paint(made, truth.grove(made), (32, 32), 2).linear
         e_sky = sky_for(worlds.sky(truth.SKY), angles(made.sun)[1]).sky_irradiance
@@ -79,8 +79,7 @@ def test_no_pixel_is_brighter_than_its_matter_can_be(paint: Paint, kind: str) ->
 
 def test_a_sun_below_the_horizon_leaves_the_skys_light_alone(paint: Paint) -> None:
     for kind in ("horizon_map", "double_horizon_map", "depth_shadow_map"):
-        parameters = {"sectors": 16} if kind == "horizon_map" else {}
-        night = {**truth.SCENE, **worlds.with_technique("shadow", kind, **parameters), "sun": worlds.sun(245, -4)}
+        night = {**truth.SCENE, **worlds.with_technique("shadow", kind), "sun": worlds.sun(245, -4)}
         made = worlds.state(**night)
         dark = truth.grove(made) | worlds.together(sky=worlds.sky())
         assert paint(made, dark, (16, 16), 1).linear[..., :3].max() < 1e-6

@@ -10,6 +10,7 @@ import json
 import math
 import subprocess
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -22,7 +23,7 @@ from renderer.core.baking import bake_key, bake_now
 from renderer.core.cache import Cache
 from renderer.core.technique import BakedArrays
 from renderer.forest.state import ForestState
-from renderer.forest.world_scale import CANOPY_HEIGHT, CELL, TILE_SIDE, VOXEL
+from renderer.forest.world_arrays import world_arrays
 from renderer.gl.thread import GLThread
 from renderer.reference.forest import Options, Reference, render
 from renderer.reference.forest_world import ForestWorld
@@ -30,8 +31,6 @@ from renderer.study.metrics import relative_rmse
 from renderer.world.camera import rays
 from renderer.world.image import save_image
 from renderer.world.sampling import offset, offsets
-from renderer.world.sky import sky_for
-from renderer.world.sun import angles, direction
 from tests.forest import worlds
 
 ROOT = Path(__file__).parent.parent.parent
@@ -60,7 +59,7 @@ SCENE: dict[str, Any] = {
     "camera": {"kind": "orbit", "target": [10, 0, 30], "distance": 150, "azimuth": 200, "elevation": 32,
                "field_of_view": 40},
     "sun": worlds.sun(245, 33),
-    "ground": {"tint_strength": 0.2, "albedo": [0.12, 0.1, 0.05]},
+    "ground": {"tint_strength": 0.2, "patches": 0.2, "albedo": [0.12, 0.1, 0.05]},
     "view": {"exposure": 2.0},
 }
 REFERENCE_OPTIONS = {
@@ -162,19 +161,8 @@ def _baked(bake: Any) -> BakedArrays:
 
 def grove_world(made: ForestState) -> ForestWorld:
     """The grove as the reference takes it."""
-    baked = grove(made)
-    ground, pattern = baked["terrain"].arrays, baked["pattern"].arrays
-    now = sky_for(baked["sky"].arrays, angles(made.sun)[1])
-
-    def three(values: Any) -> tuple[float, float, float]:
-        return (float(values[0]), float(values[1]), float(values[2]))
-
-    return ForestWorld(
-        elevation=ground["elevation"], cover=ground["cover"], cell=CELL, canopy_height=CANOPY_HEIGHT,
-        tile_side=TILE_SIDE, voxel=VOXEL, colour=pattern["colour"], normal=pattern["normal"],
-        anchor=pattern["anchor"], tile=pattern["tile"], seed=made.ground.map_seed,
-        tint_strength=made.ground.tint_strength, ground_albedo=made.ground.albedo, e_sun=three(now.sun_irradiance),
-        e_sky=three(now.sky_irradiance), sun=three(direction(made.sun)))
+    arrays = {name: entry.arrays for name, entry in grove(made).items()}
+    return replace(ForestWorld(**world_arrays(made, arrays)), background=None)
 
 
 def reference(name: str) -> tuple[Reference, dict[str, Any]]:

@@ -98,7 +98,7 @@ def test_distance_to_the_reference(judge: Judge) -> None:
         MARCH,
         0.39,  # one angle a sector: no gaps between and under crowns, and the neighbours are the atlas' own
         0.11,  # one height for the whole canopy
-        against="full", shadow=worlds.technique("shadow", "horizon_map", sectors=16),
+        against="full",
     )
 
 
