@@ -34,6 +34,7 @@ class Live:
         tell: sends a message.
         spawn: runs something beside the reader for as long as the session lives.
         state: the first state.
+        opening: with which the scene opens, where the first state cannot be drawn.
     """
 
     def __init__(
@@ -43,13 +44,14 @@ class Live:
         tell: Callable[[BaseModel], Awaitable[None]],
         spawn: Callable[[Coroutine[Any, Any, None]], None],
         state: BaseModel,
+        opening: BaseModel,
     ) -> None:
         self.painter = painter
         self.document: Document = state.model_dump(mode="json")
         self.version = 1
         self._hub, self._tell, self._spawn = hub, tell, spawn
         self._preparers: list[Preparer] = []
-        self._drawn: Document | None = None
+        self._drawn: Document = opening.model_dump(mode="json")
         self._beside: Document | None = None
         self._probes = 0
         self._open_pane()
@@ -133,7 +135,7 @@ class Live:
 
         async def failed(wish: Wish, words: dict[str, str]) -> None:
             await self._tell(protocol.Refusal(**words))
-            if index == 0 and wish.version == self.version and self._drawn is not None:
+            if index == 0 and wish.version == self.version and self.document != self._drawn:
                 await self.replace(self._drawn, None)
 
         self.panes.append(pane)

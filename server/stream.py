@@ -140,7 +140,8 @@ class Stream:
         codecs: tuple[protocol.Codec, ...] = tuple(codec for codec in protocol.CODECS if codec in message.codecs)
         if not codecs:
             raise InputError("codecs", "none of these codecs is known", ", ".join(protocol.CODECS))
-        state = await self._first_state(message)
+        opening = self._opening(message)
+        state = await self._first_state(message, opening)
         document = state.model_dump(mode="json")
         info = self._hub.session.gl.info
         await self._tell(
@@ -155,21 +156,27 @@ class Stream:
         )
         size = (message.width, message.height)
         painter = Painter(self._hub, self._socket.send_bytes, self._tell, codecs, message.frame_ms, size)
-        self._live = Live(self._hub, painter, self._tell, self._spawn, state)
+        self._live = Live(self._hub, painter, self._tell, self._spawn, state, opening)
 
-    async def _first_state(self, message: protocol.Hello) -> BaseModel:
-        """The state asked for, else the scene's first preset; where it is refused, say so and open with that."""
+    def _opening(self, message: protocol.Hello) -> BaseModel:
+        """What the scene asked for opens with, its first preset; where there is no such scene, that of the first."""
+        scenes = {str(scene["name"]): scene for scene in self._hub.session.scenes()}
+        wanted = message.scene or str((message.state or {}).get("scene"))
+        name = wanted if wanted in scenes else next(iter(scenes))
+        return self._hub.session.state(name, first_preset(scenes[name]))
+
+    async def _first_state(self, message: protocol.Hello, opening: BaseModel) -> BaseModel:
+        """The state asked for; where none is, or it is refused, what the scene opens with."""
         session = self._hub.session
-        firsts = {str(scene["name"]): first_preset(scene) for scene in session.scenes()}
-        scene = message.scene or str((message.state or {}).get("scene") or next(iter(firsts)))
         try:
             if message.state is not None:
                 return session.validate(message.state)
-            return session.state(scene, message.preset or firsts.get(scene))
+            own = str(opening.model_dump()["scene"])
+            if message.preset is not None or message.scene not in (None, own):
+                return session.state(message.scene or own, message.preset)
         except UmbrageError as failure:
             await self._refuse(failure)
-            known = scene if scene in firsts else next(iter(firsts))
-            return session.state(known, firsts[known])
+        return opening
 
     def _spawn(self, work: Coroutine[Any, Any, None]) -> None:
         task: asyncio.Task[None] = asyncio.create_task(self._guard(work))

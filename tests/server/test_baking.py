@@ -107,3 +107,31 @@ def test_a_bake_beside_does_not_stop_the_pictures(
         talk.until("idle")
         while 1 not in {header.stream for header, _ in talk.frames}:
             talk.frame()
+
+
+def test_a_first_state_that_cannot_be_baked_gives_way_to_the_scene_s_own(
+    client: TestClient, hello: dict[str, Any]
+) -> None:
+    """Born from a link to a file that had expired: it showed an error, and never a picture."""
+    with client.websocket_connect("/api/session") as socket:
+        talk = Talk(socket)
+        talk.send(**{**hello, "state": {"scene": "fake", "density": 999}})
+        assert talk.until("error")["field"] == "density"
+        assert talk.until("state")["state"]["density"] == 1
+        talk.until("idle")
+        assert talk.frames[-1][0].version == 2
+
+
+def test_an_opening_that_cannot_be_baked_is_told_once(
+    client: TestClient, session: FakeSession, hello: dict[str, Any]
+) -> None:
+    with client.websocket_connect("/api/session") as socket:
+        session.bake_gate.clear()
+        session.baked.clear()
+        talk = Talk(socket)
+        talk.send(**hello)
+        talk.until("progress")
+        talk.send(type="cancel")
+        assert "cancelled" in talk.until("error")["message"]
+        talk.until("ready")
+        assert talk.silent(0.3)
