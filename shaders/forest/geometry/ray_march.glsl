@@ -34,8 +34,10 @@ void geometry_trace(vec3 origin, vec3 direction, float t, vec4 jitter, inout Eve
         add_matter(event, vec4(p, h), voxel, opacity);
         if (found == 1) {
             previous = t;
+            // No skip passes through the ground: a brink may stand in an empty canopy.
+            float safe = step_above(over ? gap : above, direction, ground);
             float skip = max((free_voxels(voxel) - 1.0) * scale / rate, stand.y - GLADE_REACH);
-            t += over ? max(step_above(gap, direction, ground), 0.5 * ds) : max(ds, skip);
+            t += over ? max(safe, 0.5 * ds) : max(ds, min(skip, safe));
         }
     }
     if (found == 2) {

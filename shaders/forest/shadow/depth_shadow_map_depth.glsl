@@ -32,7 +32,9 @@ vec4 shadow_depth_texel(vec2 pixel) {
         vec4 voxel = voxel_at(vec3(atlas_coordinate(p.xy), h), level);
         vec2 stand = cover_at(foot_of(p.xy, voxel));
         if (opacity_of(voxel) * stand.x >= shadow_threshold) return vec4(t);
-        t += max(max((free_voxels(voxel) - 1.0) / rate, stand.y - GLADE_REACH), ds);
+        // No skip passes through the ground: a brink may stand in an empty canopy.
+        float skip = max((free_voxels(voxel) - 1.0) / rate, stand.y - GLADE_REACH);
+        t += max(min(skip, step_above(above, direction, ground)), ds);
     }
     return vec4(1e9);
 }
