@@ -10,7 +10,7 @@ from renderer.core.cache import AssetStore
 from renderer.core.errors import AssetError, InputError, LimitError
 from renderer.forest.species import species
 from renderer.forest.tree import Tree
-from renderer.world.mesh import Mesh, load_mesh
+from renderer.world.mesh import Mesh, MeshReading, load_mesh
 
 VARIANTS = 4
 """Trees grown of each species."""
@@ -30,7 +30,7 @@ def nursery(arguments: dict[str, Any]) -> tuple[list[Tree], np.ndarray, list[int
     """Grow the trees of a canopy, or take the user's own.
 
     Args:
-        arguments: the document's `canopy`: `mesh`, else the weights of the species by name; `seed`.
+        arguments: the document's `canopy`: `mesh` and its `reading`, else the weights of the species by name; `seed`.
 
     Returns:
         The meshes, their shares (n,) summing to 1, and the number of each one's species.
@@ -40,7 +40,8 @@ def nursery(arguments: dict[str, Any]) -> tuple[list[Tree], np.ndarray, list[int
     """
     if arguments.get("mesh"):
         try:
-            mesh = load_mesh(AssetStore().get(str(arguments["mesh"]).removeprefix("asset:")).path)
+            reading = MeshReading.model_validate(arguments.get("reading", {}))
+            mesh = load_mesh(AssetStore().get(str(arguments["mesh"]).removeprefix("asset:")).path, reading=reading)
         except InputError as failure:
             raise failure.at("canopy.mesh") from None
         return [own_tree(mesh)], np.ones(1), [len(species())]

@@ -70,7 +70,7 @@ PRESETS = {
         "Noon",
         "High sun over the whole valley.",
         {
-            "camera": _orbit((200, 200, 280), 2300, 140, 24),
+            "camera": _orbit((200, 200, 280), 2300, 140, 30),
             "sun": _sun(190, 62),
             "view": {"exposure": -7.4},
             "filter": {"bias": 1.0},

@@ -38,7 +38,7 @@ class ForestRenderer:
 
     def __init__(self, gl: GL) -> None:
         self._gl = gl
-        self._baked = Resident(gl, 6)
+        self._baked = Resident(gl, 16)
         self._moment = Resident(gl, 24)
         self._traces = LayerStore(gl, ((2, "f4"), (4, "nu2")), TRACES_KEPT)
         self._bounds: dict[tuple[str, str], dict[str, Any]] = {}

@@ -9,6 +9,7 @@ from pydantic import Field
 from renderer.core.params import Colour, Model, param
 from renderer.core.registry import slot_union
 from renderer.world.camera import Camera, Orbit
+from renderer.world.mesh import MeshReading
 from renderer.world.state import SceneState
 from renderer.world.terrain import TerrainReading
 
@@ -107,6 +108,9 @@ class Canopy(Model):
         cost="bake",
         pattern=r"^(asset:[0-9a-f]{64})?$",
     )
+    reading: MeshReading = param(
+        MeshReading(), label="Reading of the own tree", help="What its file leaves unsaid.", cost="bake"
+    )
     density: float = param(
         1.0, label="Density", help="Of the stand, against a closed forest.", unit="ratio", cost="bake", ge=0.1, le=1.5
     )
@@ -145,7 +149,7 @@ class ForestState(SceneState):
 
     scene: Literal["forest"] = "forest"
     camera: Camera = param(
-        Orbit(target=(200.0, 200.0, 280.0), distance=2300.0, azimuth=140.0, elevation=24.0),
+        Orbit(target=(200.0, 200.0, 280.0), distance=2300.0, azimuth=140.0, elevation=30.0),
         label="Camera",
         help="Where the picture is taken from.",
         cost="host",
