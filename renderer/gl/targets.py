@@ -72,6 +72,7 @@ class Target:
     def read(self) -> np.ndarray:
         """Pixels (height, width, components), row 0 at the top."""
         pixels = np.empty((self.height, self.width, self._components), _NUMPY[self._dtype])
+        self._gl.finish()
         self.framebuffer.read_into(pixels, components=self._components, alignment=1, dtype=self._dtype)
         return np.ascontiguousarray(pixels[::-1])
 
@@ -218,6 +219,7 @@ class ToneMap:
         if self._target is None:
             raise UmbrageError("no picture was drawn yet")
         pixels = np.empty((self._target.height, self._target.width, 3), np.uint8)
+        self._gl.finish()
         self._target.framebuffer.read_into(pixels, components=3, alignment=1)
         return pixels  # the stage drew the picture's top row first
 
