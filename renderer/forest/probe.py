@@ -31,7 +31,8 @@ def probe(
 
     Returns:
         `position` east, north and above the square's lowest point [m], `elevation` above the sea [m], `slope`,
-        `wooded`, `horizon` and its `azimuths`, whether the `sun_up`, and its `sun_hours` where the sun is a moment's;
+        `wooded`, `horizon` and its `azimuths`, seen from `eye_height` above the ground [m]: the ground itself, or the
+        treetops where there is a stand; whether the `sun_up` there, and its `sun_hours` where the sun is a moment's;
         or `sky` where nothing is met.
     """
     ground = arrays["terrain"]
@@ -41,12 +42,14 @@ def probe(
         return {"sky": True}
     cells = (CELL, CELL)
     normal = normal_at(ground["elevation"], cells, place[0], place[1])
-    elevations, azimuths = horizon(ground["surface"], place)
+    eye = eye_above(ground["surface"], place)
+    elevations, azimuths = horizon(ground["surface"], eye)
     facts = {
         "position": [round(float(value), 2) for value in place],
         "elevation": round(float(place[2] + ground["base"]), 2),
         "slope": round(math.degrees(math.acos(min(1.0, float(normal[2])))), 2),
         "wooded": bool(height_at(ground["cover"], cells, place[0], place[1]) > 0.5),
+        "eye_height": round(float(eye[2] - place[2]), 2),
         "horizon": [round(math.degrees(value), 2) for value in elevations],
         "azimuths": [round(math.degrees(value), 2) for value in azimuths],
         "sun_up": bool(angles(state.sun)[1] > np.interp(angles(state.sun)[0] % (2 * math.pi), azimuths, elevations)),
@@ -60,11 +63,16 @@ def probe(
     return facts
 
 
+def eye_above(surface: np.ndarray, place: np.ndarray) -> np.ndarray:
+    """Where one looks round from at a place (3,) of the ground [m]: from the treetops, if a stand is above it."""
+    return np.array([*place[:2], max(float(place[2]), float(height_at(surface, (CELL, CELL), place[0], place[1])))])
+
+
 def horizon(surface: np.ndarray, place: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Elevation of the horizon [rad] around a point of the ground, and its azimuths [rad] clockwise from north.
 
     Args:
-        surface: (N, N) height of land and stands [m]. place: (3,) [m], eye on the ground.
+        surface: (N, N) height of land and stands [m]. place: (3,) [m], of the eye.
     """
     azimuths = np.arange(AZIMUTHS) * 2 * math.pi / AZIMUTHS
     distance = np.geomspace(CELL / 2, CELL * surface.shape[0], 240)
