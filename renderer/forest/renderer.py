@@ -76,10 +76,6 @@ class ForestRenderer:
         self._moment.release()
         self._traces.release()
 
-    def bytes_held(self, baked: Baked) -> int:
-        """Bytes of the arrays behind a frame's textures."""
-        return sum(array.nbytes for entry in baked.values() for array in entry.arrays.values())
-
     def _world_textures(self, state: ForestState, baked: Baked) -> dict[str, AnyTexture]:
         ground, pattern = baked["terrain"], baked["pattern"]
         seed = state.ground.map_seed

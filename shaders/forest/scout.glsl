@@ -1,5 +1,5 @@
 // How far every ray of a block of pixels may run before any of them can meet the canopy: cone marching.
-// Fulcrum (Seven/Fulcrum) 2012, "Cone marching in distance fields", for a heightfield bounded by its steepest slope.
+// Cone marching (Seven and Fulcrum 2012, "Cone marching": one march for a block of pixels), over a heightfield of bounded slope.
 // Symbols: r radius of the block's cone [m], k its growth per metre of ray; S terrain_steepness; gap height over the canopy [m].
 // Over the whole cone the gap is at least gap - (S + 1) r: a ray r away is at most r lower, over ground at most S r higher.
 
