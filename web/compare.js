@@ -1,17 +1,18 @@
 // A beside B: another technique or the reference, by split, blink, difference or error map, with the numbers.
 
 import * as api from "./api.js";
-import { el, freshId } from "./dom.js";
+import { el, freshId, say } from "./dom.js";
 import { Progress } from "./notices.js";
 
 const BLINK_MS = 700;
 const MODES = [["split", "Split"], ["blink", "Blink"], ["difference", "Difference"], ["error", "Error map"]];
+const percent = (value) => `${(100 * value).toFixed(2)} %`;
 const NUMBERS = [
-  ["relative_rmse", "Relative RMSE", (v) => `${(100 * v).toFixed(2)} %`], ["flip_mean", "FLIP, mean", (v) => v.toFixed(4)],
-  ["flip_p95", "FLIP, 95th percentile", (v) => v.toFixed(4)], ["standard_error", "Reference's own error", (v) => v.toExponential(1)],
-  ["seconds", "Reference took", (v) => `${v.toFixed(1)} s`],
+  ["relative_rmse", "Relative RMSE", percent], ["flip_mean", "FLIP, mean", (v) => v.toFixed(4)],
+  ["flip_p95", "FLIP, 95th percentile", (v) => v.toFixed(4)], ["standard_error", "Reference's own error", percent],
+  ["seconds", "Reference took", (v) => `${v.toFixed(1)} s`], ["size", "Compared at", (v) => v.join(" × ")],
 ];
-const REFERENCE_SIDE = 256;
+const REFERENCE_SIDE = 128;
 
 /** The left panel and the split on the picture. */
 export class Compare {
@@ -41,6 +42,7 @@ export class Compare {
     this.progress = new Progress(() => this.abort?.abort());
     this.progress.root.hidden = true;
     this.numbers = el("dl", { class: "costs" });
+    this.scale = el("div", { class: "control", hidden: true });
     this.gain = el("input", { type: "range", min: 1, max: 16, step: 1, value: 4, class: "slider", "aria-label": "Gain of the difference",
       on: { input: () => this.screen.root.style.setProperty("--gain", this.gain.value) } });
     this.gainRow = el("div", { class: "control", hidden: true }, el("div", { class: "control-head" }, el("span", { class: "label", text: "Gain" })), this.gain);
@@ -50,7 +52,7 @@ export class Compare {
       el("button", { type: "button", class: "wide", text: "Compare with the reference", on: { click: () => this.reference() } }),
       this.progress.root,
       el("div", { class: "segments", role: "radiogroup", "aria-label": "How to compare" }, this.radios.map(([, label]) => label)),
-      this.gainRow, this.numbers,
+      this.gainRow, this.scale, this.numbers,
       el("button", { type: "button", class: "quiet", text: "Stop comparing", on: { click: () => this.stop() } }));
     this.fillKinds(false);
     this.update();
@@ -75,10 +77,9 @@ export class Compare {
     const slot = this.slot.value;
     const node = this.store.schema.members(this.store.schema.at(slot, this.store.document)).get(this.kind.value);
     this.patch = { [slot]: this.store.schema.fresh(node) };
-    this.errorMap = null;
+    this.truth = null;
     this.numbers.replaceChildren();
     this.link.send({ type: "compare", patch: this.patch });
-    this.labels(this.title(slot, this.store.document[slot]?.kind), this.title(slot, this.kind.value));
     this.show(this.mode === "error" ? "split" : this.mode);
   }
 
@@ -109,28 +110,44 @@ export class Compare {
       const [, url] = Object.entries(result.files).find(([name]) => name.startsWith(word));
       return createImageBitmap(await (await fetch(url)).blob());
     };
-    this.truth = await image("reference");
-    this.errorMap = await image("error");
-    this.numbers.replaceChildren(...NUMBERS.filter(([key]) => Number.isFinite(result[key]))
+    [this.judged, this.truth, this.errorMap] = await Promise.all(["picture", "reference", "error"].map(image));
+    this.legend(result);
+    this.numbers.replaceChildren(...NUMBERS.filter(([key]) => result[key] !== null && result[key] !== undefined)
       .flatMap(([key, title, write]) => [el("dt", { text: title }), el("dd", { text: write(result[key]) })]));
-    this.labels("Picture", "Reference");
     this.show("split");
   }
 
   /** The reference belongs to one state; once that changes it is taken off rather than left to mislead. */
   staleReference() {
     if (this.truth) this.stop();
+    else this.names();
   }
 
-  labels(a, b) {
-    this.tagA.textContent = a;
-    this.tagB.textContent = b;
+  /** What A and B show, in words. */
+  names() {
+    const [slot] = Object.keys(this.patch ?? {});
+    const [a, b] = slot ? [this.store.document[slot].kind, this.patch[slot].kind].map((kind) => this.title(slot, kind))
+      : ["Picture", this.mode === "error" ? "Error" : "Reference"];
+    say(this.tagA, a);
+    say(this.tagB, b);
+  }
+
+  /** The error map's colours, from no error to the top of its scale. */
+  legend({ legend, saturated }) {
+    const top = legend.at(-1)[0];
+    const bar = el("span", { class: "scale-bar" });
+    bar.style.background = `linear-gradient(90deg, ${legend.map(([, colour]) => `rgb(${colour.join(" ")})`)})`;
+    this.scale.replaceChildren(el("span", { class: "label", text: "Error, as a share of the reference's mean" }), bar,
+      el("span", { class: "scale-ends" }, [0, top / 2, top].map((value) => el("span", { text: `${(100 * value).toFixed(0)} %` }))),
+      el("span", { class: "hint-facts", text: `${percent(saturated)} of the pixels lie above.` }));
   }
 
   show(mode) {
     this.mode = mode;
     this.active = Boolean(this.patch || this.truth);
-    if (this.truth) this.screen.still(mode === "error" ? this.errorMap : this.truth);
+    if (this.truth) this.screen.still(this.judged, mode === "error" ? this.errorMap : this.truth);
+    this.screen.root.toggleAttribute("data-truth", Boolean(this.truth));
+    this.names();
     clearInterval(this.blinking);
     const root = this.screen.root;
     root.dataset.compare = this.active ? mode : "";
@@ -144,7 +161,8 @@ export class Compare {
       radio.checked = radio.value === this.mode;
       radio.disabled = radio.value === "error" && !this.truth;
     }
-    if (this.gainRow) this.gainRow.hidden = this.mode !== "difference";
+    this.gainRow.hidden = this.mode !== "difference";
+    this.scale.hidden = !this.truth || this.mode !== "error";
     this.handle.hidden = !(this.active && (this.mode === "split" || this.mode === "error"));
     this.tagA.hidden = this.tagB.hidden = !this.active;
     this.screen.root.style.setProperty("--split", this.at);
@@ -154,7 +172,7 @@ export class Compare {
   stop() {
     if (this.patch) this.link.send({ type: "compare", patch: null });
     this.abort?.abort();
-    this.patch = this.truth = this.errorMap = null;
+    this.patch = this.truth = null;
     this.numbers?.replaceChildren();
     this.show("split");
   }

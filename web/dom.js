@@ -88,8 +88,3 @@ export function perFrame(work) {
 export function say(node, text) {
   if (node.textContent !== text) node.textContent = text;
 }
-
-/** True where the person asked their system for less motion. */
-export function reducedMotion() {
-  return matchMedia("(prefers-reduced-motion: reduce)").matches;
-}

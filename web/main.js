@@ -39,7 +39,7 @@ const dialog = find("#dialog");
 const upload = new Upload(dialog, store, notices);
 new Frames(link, screen, stats);
 new Overlay(find("#corner"), stats);
-new Probe(find("#probe"), pointer, link);
+new Probe(find("#probe"), pointer, link, store, () => sunBar);
 
 /** Show a dialog whose body `fill` makes. */
 function show(title, fill) {
@@ -88,7 +88,7 @@ async function choose(name, preset) {
 async function opened({ detail: welcome }) {
   const { limits = {}, gl = {} } = welcome;
   screen.grey(false);
-  notices.connection(null);
+  waiting();
   if (!store.scene || store.scene.name !== welcome.scene) {
     const scene = await api.scene(welcome.scene);
     store.schema = schemaOf(scene);
@@ -100,9 +100,19 @@ async function opened({ detail: welcome }) {
   link.pump();
 }
 
+/** Words until the first picture; none once there is one. */
+function waiting() {
+  notices.connection(stats.frames ? null : "Drawing the first picture …");
+}
+
 function message({ detail }) {
-  if (detail.type === "progress") notices.working(detail);
-  else if (detail.type === "ready") notices.working(null);
+  if (detail.type === "progress") {
+    notices.connection(null);
+    notices.working(detail);
+  } else if (detail.type === "ready") {
+    notices.working(null);
+    waiting();
+  }
   else if (detail.type === "idle") stats.told = true;
   else if (detail.type === "error") refused(detail);
 }
@@ -170,6 +180,7 @@ async function start() {
     stale ||= detail.source === "server" || detail.source === "scene";
     refresh();
   });
+  stats.addEventListener("frame", waiting, { once: true });
   screen.addEventListener("size", () => link.send({ type: "resize", width: screen.width, height: screen.height }));
   link.addEventListener("open", (event) => opened(event).catch((error) => notices.toast(error.message, "refusal")));
   link.addEventListener("message", message);

@@ -1,13 +1,14 @@
-// The two canvases that fill the window (A, and B for comparison) and the size asked of the server.
+// The canvases that fill the window (A, B for comparison, a still over A) and the size asked of the server.
 
 const SOFTWARE_WIDTH = 1280;
+const STILL = 2;
 
 /** Draws bitmaps; stream 0 on A, stream 1 on B. `size` events tell when another size should be asked for. */
 export class Screen extends EventTarget {
   constructor(root) {
     super();
     this.root = root;
-    this.canvases = [root.querySelector("#picture"), root.querySelector("#picture-b")];
+    this.canvases = ["#picture", "#picture-b", "#picture-still"].map((name) => root.querySelector(name));
     this.contexts = this.canvases.map((canvas) => canvas.getContext("2d", { alpha: false }));
     this.limits = { width: SOFTWARE_WIDTH, height: SOFTWARE_WIDTH };
     this.width = 0;
@@ -48,9 +49,10 @@ export class Screen extends EventTarget {
     }
   }
 
-  /** Draw an image that is no frame, as a reference picture, on B. */
-  still(image) {
-    this.draw(1, image);
+  /** Lay images that are no frames over A and B, as a reference and the picture it was compared with. */
+  still(picture, beside) {
+    this.draw(STILL, picture);
+    this.draw(1, beside);
   }
 
   /** Grey the picture while the connection is away. */

@@ -73,6 +73,12 @@ export class Days {
   }
 }
 
+/** The letters of the four winds round a circle. */
+export function winds(radius) {
+  return [["N", 0, -radius - 3.5], ["E", radius + 6, 3], ["S", 0, radius + 9], ["W", -radius - 6.5, 3]].map(([text, x, y]) =>
+    svg("text", { class: "dome-letter", x, y, "text-anchor": "middle", "aria-hidden": "true", text }));
+}
+
 /** A view of the sky from below turned north up: centre is the zenith, the ring the horizon. */
 export class Dome {
   constructor(root, onDrag, onGesture) {
@@ -82,10 +88,8 @@ export class Dome {
     this.handle = svg("circle", { class: "dome-sun", r: 6, tabindex: 0, role: "slider", "aria-label": "Sun",
       "aria-valuemin": LOWEST, "aria-valuemax": 90 });
     const rings = [30, 60].map((elevation) => svg("circle", { class: "dome-ring", r: this.radius(elevation) }));
-    const letters = [["N", 0, -HORIZON - 3.5], ["E", HORIZON + 5, 3], ["S", 0, HORIZON + 9], ["W", -HORIZON - 6, 3]].map(([text, x, y]) =>
-      svg("text", { class: "dome-letter", x, y, "text-anchor": "middle", "aria-hidden": "true", text }));
     this.svg = svg("svg", { class: "dome", viewBox: `${-SIZE / 2} ${-SIZE / 2} ${SIZE} ${SIZE}` },
-      svg("circle", { class: "dome-disc", r: HORIZON }), rings, letters, this.path, this.ray, this.handle);
+      svg("circle", { class: "dome-disc", r: HORIZON }), rings, winds(HORIZON), this.path, this.ray, this.handle);
     root.append(this.svg);
     this.svg.addEventListener("pointerdown", (event) => this.down(event, onGesture));
     this.handle.addEventListener("keydown", (event) => this.key(event));

@@ -12,8 +12,8 @@ export class SlotPicker {
     this.name = freshId("slot");
     this.list = freshId("techniques");
     this.title = el("span", { class: "slot-technique" });
-    this.caption = el("span", { class: "slot-caption" });
-    this.paper = el("span", { class: "slot-paper" });
+    this.caption = el("span", { class: "caption" });
+    this.paper = el("span", { class: "paper" });
     this.button = el("button", { type: "button", class: "slot-button", "aria-expanded": "false", "aria-controls": this.list,
       on: { click: () => this.unfold(this.cards.hidden) } },
     el("span", { class: "slot-name", text: slot.title }), this.title, this.caption, this.paper, icon("down"));
@@ -32,8 +32,8 @@ export class SlotPicker {
     const standard = technique.kind === this.slot.default ? el("span", { class: "badge", text: "default" }) : null;
     return el("label", { class: "card" }, radio,
       el("span", { class: "card-title" }, technique.title, standard),
-      el("span", { class: "card-caption", text: note }),
-      el("span", { class: "card-paper", text: technique.paper }));
+      el("span", { class: "caption", text: note }),
+      el("span", { class: "paper", text: technique.paper }));
   }
 
   unfold(open) {

@@ -139,7 +139,7 @@ export class SunBar {
     const { sun } = this.store.document;
     const free = sun.kind === "direction";
     this.minutes = free ? (this.day?.nearest(sun) ?? 720) : minutesOf(sun.time);
-    const placed = free ? sun : (this.day?.at(this.minutes) ?? null);
+    const placed = this.placed = free ? sun : (this.day?.at(this.minutes) ?? null);
     this.root.classList.toggle("free", free);
     say(this.clock, free ? "by hand" : sun.time.slice(0, 5));
     say(this.note, placed ? `${compass(placed.azimuth)} ${placed.azimuth.toFixed(0)}°, ${placed.elevation.toFixed(1)}° high` : "");
