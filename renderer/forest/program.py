@@ -27,7 +27,7 @@ MARCH_STEPS = 1024
 """Steps a ray may take inside the canopy layer."""
 
 WORLD_DECLARATIONS = """uniform sampler2D heights;        // coefficients of each cell, as shares of terrain_range
-uniform sampler2D normals;
+uniform sampler2D normals;         // of the ground, and its cover
 uniform sampler2D cover;
 uniform sampler3D pattern_voxels;
 uniform sampler3D pattern_normal;

@@ -60,11 +60,11 @@ def fine_cover(cover: np.ndarray) -> np.ndarray:
 
 
 def ground_textures(gl: GL, ground: Arrays) -> dict[str, AnyTexture]:
-    """`heights`, `normals` and `cover` from the `terrain` bake."""
+    """`heights`, `normals` (with the smooth cover) and `cover` from the `terrain` bake."""
     slope = normals(ground["elevation"], (CELL, CELL))[::-1]
     return {
         "heights": gl.texture2d(bilinear_cells(ground["elevation"])[0], filter="nearest"),
-        "normals": gl.texture2d(np.concatenate([slope, np.zeros_like(slope[..., :1])], axis=-1).astype(np.float16)),
+        "normals": gl.texture2d(np.concatenate([slope, ground["cover"][::-1, :, None]], axis=-1).astype(np.float16)),
         "cover": gl.texture2d(fine_cover(ground["cover"]), filter="nearest"),
     }
 

@@ -15,7 +15,7 @@ float horizon_lit(float gamma, float phi, float eps) {
 
 // Whether the stand goes on towards the sun: a tile's horizon, which knows neither glades nor edges, counts only there.
 float stand_towards_sun(vec2 xy) {
-    return covered(xy) * covered(xy + NEIGHBOUR * normalize(sun_direction.xy + 1e-6));
+    return wooded_at(xy) * wooded_at(xy + NEIGHBOUR * normalize(sun_direction.xy + 1e-6));
 }
 
 // Sun over the land's horizon and over the canopy's: the land hides it wholly, the canopy by its strength, for leaves let light through.

@@ -14,7 +14,7 @@ vec3 outgoing(vec4 place, vec4 voxel, float level) {
     vec4 texel = textureLod(pattern_normal, vec3(uv, h), level);
     vec3 slope = ground_normal(place.xy);
     vec3 normal = on_ground ? slope : normalize(texel.xyz * 2.0 - 1.0 + vec3(0.0, 0.0, 1e-4));
-    float wooded = on_ground ? covered(place.xy) : 1.0;
+    float wooded = on_ground ? wooded_at(place.xy) : 1.0;
     float ambient = mix(1.0, texel.a, wooded) * (on_ground ? 0.5 + 0.5 * slope.z : 1.0);
     float factor = mix(1.0, height_factor(h), wooded);
     vec3 leaf = albedo_of(voxel) * (1.0 + ground_tint_strength * tint_of(foot_of(place.xy, voxel)));

@@ -29,6 +29,11 @@ vec3 ground_normal(vec2 xy) {
     return normalize(textureLod(normals, terrain_coordinate(xy), 0.0).xyz);
 }
 
+// Whether the ground is wooded, 0 to 1 across the forest's own edge: bilinear cover above one half, where `cover` is a coarse yes or no.
+float wooded_at(vec2 xy) {
+    return smoothstep(0.45, 0.55, textureLod(normals, terrain_coordinate(xy), 0.0).a);
+}
+
 // Where trees may stand, 0 or 1, and how far off the next such place is [m].
 vec2 cover_at(vec2 xy) {
     return textureLod(cover, terrain_coordinate(xy), 0.0).rg * vec2(1.0, 255.0);
