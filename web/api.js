@@ -36,6 +36,9 @@ export const scenes = async () => (await request("api/scenes")).json();
 export const scene = async (name) => (await request(`api/scenes/${encodeURIComponent(name)}`)).json();
 export const measureSun = async (moment) => (await request("api/measure/sun", asJson(moment))).json();
 
+/** Seconds of precomputation that a state with other values would take. */
+export const cost = async (state, sets) => (await request("api/cost", asJson({ state, sets }))).json();
+
 /** A finished picture as a blob of `type`. */
 export async function render(state, width, height, type = "image/png") {
   const options = asJson({ scene: state.scene, state, width, height });

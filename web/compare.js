@@ -1,7 +1,7 @@
 // A beside B: another technique or the reference, by split, blink, difference or error map, with the numbers.
 
 import * as api from "./api.js";
-import { el, freshId, say } from "./dom.js";
+import { el, follow, freshId, say } from "./dom.js";
 import { Progress } from "./notices.js";
 
 const BLINK_MS = 700;
@@ -179,11 +179,8 @@ export class Compare {
 
   drag(event) {
     event.preventDefault();
-    this.handle.setPointerCapture(event.pointerId);
     this.handle.focus({ preventScroll: true });
-    const move = (moved) => this.move(moved.clientX / this.screen.root.clientWidth);
-    this.handle.addEventListener("pointermove", move);
-    this.handle.addEventListener("lostpointercapture", () => this.handle.removeEventListener("pointermove", move), { once: true });
+    follow(this.handle, event, (moved) => this.move(moved.clientX / this.screen.root.clientWidth));
   }
 
   move(at) {

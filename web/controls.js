@@ -1,6 +1,6 @@
 // One control per declared parameter, made from its schema node: label, entry, unit, range, reset, error.
 
-import { el, freshId, iconButton } from "./dom.js";
+import { el, follow, freshId, iconButton } from "./dom.js";
 import { same, valueAt, patchOf } from "./document.js";
 import { range, stepOf, unitOf } from "./schema.js";
 import { fromHex, toHex } from "./colour.js";
@@ -145,14 +145,7 @@ class NumberControl extends Control {
         this.entry.value = written(last, this.step);
         if (!this.dear) this.set(last);
       };
-      const up = () => {
-        handle.removeEventListener("pointermove", move);
-        if (last !== null && this.dear) this.set(last);
-      };
-      handle.setPointerCapture(down.pointerId);
-      handle.addEventListener("pointermove", move);
-      handle.addEventListener("pointerup", up, { once: true });
-      handle.addEventListener("pointercancel", up, { once: true });
+      follow(handle, down, move, () => last !== null && this.dear && this.set(last));
     });
   }
 

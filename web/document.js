@@ -34,12 +34,6 @@ export function combine(first, second) {
   return result;
 }
 
-/** Every dotted path that a patch sets. */
-export function pathsOf(patch, prefix = "") {
-  return Object.entries(patch).flatMap(([key, value]) =>
-    isObject(value) ? pathsOf(value, `${prefix}${key}.`) : [`${prefix}${key}`]);
-}
-
 /** True when two JSON values are equal. */
 export function same(a, b) {
   if (a === b) return true;

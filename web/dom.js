@@ -84,6 +84,16 @@ export function perFrame(work) {
   };
 }
 
+/** Follow a pointer that went down on `node` until it is let go. */
+export function follow(node, event, move, end) {
+  node.setPointerCapture(event.pointerId);
+  node.addEventListener("pointermove", move);
+  node.addEventListener("lostpointercapture", () => {
+    node.removeEventListener("pointermove", move);
+    end?.();
+  }, { once: true });
+}
+
 /** Write a text where it differs: even the same text written again costs the page a layout. */
 export function say(node, text) {
   if (node.textContent !== text) node.textContent = text;

@@ -1,10 +1,11 @@
 // The right panel: techniques by slot, then every other parameter of the scene, generated from its schema.
 
+import * as api from "./api.js";
 import { converted } from "./camera.js";
 import { el } from "./dom.js";
 import { valueAt } from "./document.js";
 import { Form, humanise, UnionPart } from "./form.js";
-import { range, Schema, unitOf } from "./schema.js";
+import { range, Schema, stepOf, unitOf } from "./schema.js";
 import { SlotPicker } from "./techniques.js";
 
 const LATE = ["view", "quality", "camera"];
@@ -100,8 +101,18 @@ export class Panels {
     const unit = unitOf(node);
     const ends = minimum === undefined && maximum === undefined ? "" : `${minimum ?? "−∞"} … ${maximum ?? "∞"} ${unit}`.trim();
     const facts = [ends, COSTS[node.umbrage?.cost] ?? "", node.umbrage?.source ?? ""].filter(Boolean).join(" · ");
-    this.hintRoot.replaceChildren(el("strong", { text: node.title ?? path }), ` ${node.description ?? ""}`,
-      el("span", { class: "hint-facts", text: facts }), el("code", { text: path }));
+    const line = el("span", { class: "hint-facts", text: facts });
+    this.hintRoot.replaceChildren(el("strong", { text: node.title ?? path }), ` ${node.description ?? ""}`, line, el("code", { text: path }));
+    if (node.umbrage?.cost === "bake") this.price(node, path, line);
+  }
+
+  /** What a change would cost, before it starts: that of the next value stands for all. */
+  async price(node, path, line) {
+    const value = valueAt(this.store.document, path);
+    const step = value >= range(node).maximum ? -stepOf(node) : stepOf(node);
+    const next = node.enum ? node.enum.find((item) => item !== value) : Number((value + step).toPrecision(6));
+    const { seconds } = await api.cost(this.store.document, { [path]: next }).catch(() => ({}));
+    if (seconds) line.append(` It takes about ${Math.ceil(seconds)} s.`);
   }
 
   /** Show a refusal at its control; false where none shows that field. */

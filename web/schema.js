@@ -49,11 +49,6 @@ export class Schema {
     return new Map(list.map((item) => [item.properties?.kind?.const, item]));
   }
 
-  /** Whether a union or object holds any field that a person may set. */
-  hasFields(node) {
-    return this.fields(node).some(([, field]) => !["constant", "other"].includes(this.sort(field)));
-  }
-
   /** The document of a union's member at its defaults. */
   fresh(member) {
     const document = { kind: member.properties.kind.const };

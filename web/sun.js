@@ -1,7 +1,7 @@
 // Where the sun is: the day's path from the server, and the dome on which the sun is dragged.
 
 import { measureSun } from "./api.js";
-import { svg } from "./dom.js";
+import { follow, svg } from "./dom.js";
 import { degrees, radians, wrap } from "./vector.js";
 
 const LOWEST = -18;
@@ -115,16 +115,10 @@ export class Dome {
       this.onDrag({ azimuth: wrap((Math.atan2(x, -y) * 180) / Math.PI), elevation }, time);
     };
     event.preventDefault();
-    this.svg.setPointerCapture(event.pointerId);
     this.handle.focus({ preventScroll: true });
     onGesture(true);
     move(event);
-    this.svg.addEventListener("pointermove", move);
-    const end = () => {
-      this.svg.removeEventListener("pointermove", move);
-      onGesture(false);
-    };
-    this.svg.addEventListener("lostpointercapture", end, { once: true });
+    follow(this.svg, event, move, () => onGesture(false));
   }
 
   key(event) {

@@ -11,7 +11,7 @@ from starlette.responses import Response
 from renderer.core.errors import InputError
 from renderer.core.params import Model, merge
 from server.hub import Hub, TheHub
-from server.problems import refuse
+from server.problems import Json, refuse
 from server.rendering import draw
 
 router = APIRouter(tags=["render"])
@@ -76,6 +76,15 @@ def negotiate(accept: str) -> str | None:
         if matching[1] > best:
             best, found = matching[1], media
     return found
+
+
+@router.post(
+    "/api/cost", summary="What a state would cost", responses={422: {"description": "A field was refused"}}
+)
+async def cost(hub: TheHub, asked: StateRequest) -> Response:
+    """`seconds` of precomputation on two cores before the state can be drawn; 0 where all of it is cached."""
+    state = await state_of(hub, asked)
+    return Json({"seconds": await hub.call(hub.session.expected_seconds, state)})
 
 
 @router.post(

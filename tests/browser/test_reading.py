@@ -106,3 +106,12 @@ def test_the_page_opens_on_a_preset_by_its_name(open_page: Open, service: house.
     presets = service.session.describe("forest")["presets"]
     wanted = presets["low_sun"] if query else next(iter(presets.values()))
     assert page.locator(".preset-name").inner_text() == wanted["title"]
+
+
+def test_what_a_precomputation_will_take_is_told_before_it_starts(page: Page) -> None:
+    page.locator("[data-slot='shadow'] .slot-button").click()
+    page.locator("[data-slot='shadow'] input[value='double_horizon_map']").check()
+    house.settled(page)
+    page.locator("[data-path='shadow.height_top']").first.hover()
+    house.until(page, "/It takes about \\d+ s\\./.test(document.querySelector('#hint').textContent)")
+    assert page.locator("#notices .progress").is_hidden(), "nothing has started"

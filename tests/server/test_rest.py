@@ -66,6 +66,14 @@ def test_the_format_follows_the_accept_header(client: TestClient, accept: str, m
         assert (linear.dtype, linear.shape) == (np.float32, (16, 24, 4))
 
 
+def test_what_a_state_would_cost_is_told_before_it_is_paid(client: TestClient, session: FakeSession) -> None:
+    baked, new = ({"scene": "fake", "sets": {"density": density}} for density in (1, 5))
+    assert client.post("/api/cost", json=baked).json() == {"seconds": 0}
+    assert client.post("/api/cost", json=new).json() == {"seconds": 1}
+    assert session.preparations == []
+    assert client.post("/api/cost", json={"scene": "fake", "sets": {"density": 0}}).status_code == 422
+
+
 def test_no_acceptable_format_is_said(client: TestClient) -> None:
     answer = client.post("/api/render", json=SMALL, headers={"Accept": "text/html"})
     assert answer.status_code == 406
