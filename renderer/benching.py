@@ -158,7 +158,7 @@ def _groups(scene: str, presets: tuple[str, ...]) -> Iterator[list[Case]]:
 SUNS: Mapping[str, dict[str, Any]] = {
     "morning": {"sun": {"kind": "direction", "azimuth": 105.0, "elevation": 30.0}, "view": {"exposure": -7.0}},
     "noon": {"sun": {"kind": "direction", "azimuth": 185.0, "elevation": 62.0}, "view": {"exposure": -7.6}},
-    "evening": {"sun": {"kind": "direction", "azimuth": 275.0, "elevation": 9.0}, "view": {"exposure": -5.8}},
+    "evening": {"sun": {"kind": "direction", "azimuth": 262.0, "elevation": 15.0}, "view": {"exposure": -5.2}},
 }
 """Three suns under which every preset is pictured, and the exposure for each."""
 
