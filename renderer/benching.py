@@ -45,13 +45,14 @@ class Stopwatch:
         self._scene = scene
         self._size = size
         self._view = session.view()
-        self._drawn: dict[str, int] = {}
+        self._turn = 0
 
     def frame_ms(self, case: Case) -> float:
         """Milliseconds of the next frame of a case; what moves in it (`moves`) has moved on by a step."""
-        name = repr(case)
-        turn = self._drawn[name] = self._drawn.get(name, -1) + 1
-        state = moved(state_of(self._session, self._scene, case), str(case.parameters.get("moves", MOVES[0])), turn)
+        # No two frames share a turn, whatever their case: one would be spared what the other has traced.
+        self._turn += 1
+        moves = str(case.parameters.get("moves", MOVES[0]))
+        state = moved(state_of(self._session, self._scene, case), moves, self._turn)
         if not self._session.prepared(state):
             self._session.prepare(state).future.result()
         return float(self._view.frame(state, *self._size).result().render_ms)
