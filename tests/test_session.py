@@ -13,7 +13,7 @@ import pytest
 from renderer.core.baking import bake_key
 from renderer.core.cache import AssetStore, Cache
 from renderer.core.errors import Cancelled, InputError, InvalidDocument, LimitError, UmbrageError
-from renderer.forest.bakes import bakes
+from renderer.forest.bakes import bakes, ground_bake
 from renderer.session import Session
 from tests.forest import worlds
 
@@ -157,7 +157,12 @@ def test_a_missing_bake_is_made_by_a_worker_with_progress(session: Session, cach
     assert session.prepared(state)
     assert {progress.name for progress in told} == {"terrain"}
     assert [progress.fraction for progress in told] == sorted(progress.fraction for progress in told)
-    assert "laying out the forest" in [progress.words for progress in told]
+    # the worker's mailbox holds its last word only, at most one in a while: all are heard in this process alone
+    bake, said = ground_bake(state), []  # type: ignore[arg-type]
+    bake.function(bake.arguments, {}, lambda fraction, words: said.append(words))
+    assert said == ["reading the terrain", "laying out the forest"]
+    assert told
+    assert {progress.words for progress in told} <= {"starting", *said}
     other = session.render(state, 16, 16).linear
     assert (other != session.render(plain, 16, 16).linear).any(), "its own land"
 
