@@ -7,11 +7,10 @@ from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from renderer.core.params import merge
 from renderer.core.registry import phenomenon, techniques
 from renderer.study.sweep import FRAMES, Case, clock, provenance
 from renderer.study.yardstick import Yardstick
-from renderer.world.state import SceneState
+from renderer.world.state import SceneState, View
 from renderer.world.sun import SunDirection, angles
 
 if TYPE_CHECKING:
@@ -157,13 +156,18 @@ def _groups(scene: str, presets: tuple[str, ...]) -> Iterator[list[Case]]:
 
 
 SUNS: Mapping[str, dict[str, Any]] = {
-    "morning": {"sun": {"kind": "direction", "azimuth": 105.0, "elevation": 30.0}, "view": {"exposure": -7.0}},
-    "noon": {"sun": {"kind": "direction", "azimuth": 185.0, "elevation": 62.0}, "view": {"exposure": -7.6}},
-    "evening": {"sun": {"kind": "direction", "azimuth": 262.0, "elevation": 15.0}, "view": {"exposure": -5.2}},
+    "morning": {"kind": "direction", "azimuth": 105.0, "elevation": 30.0},
+    "noon": {"kind": "direction", "azimuth": 185.0, "elevation": 62.0},
+    "evening": {"kind": "direction", "azimuth": 262.0, "elevation": 15.0},
 }
-"""Three suns under which every preset is pictured, and the exposure for each."""
+"""Three suns under which every preset is pictured."""
 
 
 def pictured(session: Session, scene: str, preset: str, sun: str) -> SceneState:
     """The state of a preset's picture under one of `SUNS`."""
-    return session.state(scene, preset, None, merge({"quality": {"kind": "samples", "n": 32}}, SUNS[sun]))
+    return session.state(
+        scene,
+        preset,
+        None,
+        {"sun": SUNS[sun], "quality": {"kind": "samples", "n": 32}, "view": {"exposure": View().exposure}},
+    )

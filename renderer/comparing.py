@@ -73,28 +73,31 @@ def converged(session: Session, state: SceneState, width: int, height: int) -> D
     bare = state.model_copy(update={"view": state.view.model_copy(update={"background": "none"})})
     whole = session.draw(bare, width, height, POSITIONS * PASSES, place)
     once = session.draw(bare, width, height, 1)
-    return Drawn(whole.linear, displayed(whole.linear, state.view), once.linear, whole.render_ms / 1e3)
+    shown = displayed(whole.linear, state.view, session.exposure_ev(state))
+    return Drawn(whole.linear, shown, once.linear, whole.render_ms / 1e3)
 
 
-def reference(found: Truth, view: View) -> Drawn:
+def reference(found: Truth, view: View, exposure_ev: float) -> Drawn:
     """A reference in the form in which pictures are compared."""
-    return Drawn(found.linear, displayed(found.linear, view), found.once, found.seconds, found.standard_error)
+    shown = displayed(found.linear, view, exposure_ev)
+    return Drawn(found.linear, shown, found.once, found.seconds, found.standard_error)
 
 
-def displayed(linear: np.ndarray, view: View, backdrop: np.ndarray | None = None) -> np.ndarray:
+def displayed(linear: np.ndarray, view: View, exposure_ev: float, backdrop: np.ndarray | None = None) -> np.ndarray:
     """A picture (H, W, 4) without background as a state displays it: over black, or over what is behind it.
 
     Args:
         linear: premultiplied radiance.
-        view: exposure, tone curve and background.
+        view: tone curve and background.
+        exposure_ev: EV over 1 W m-2 sr-1.
         backdrop: radiance of the sky behind it (H, W, 3); without one the background is black.
     """
     if backdrop is None:
-        return display(linear, view.exposure, view.tone_curve)
+        return display(linear, exposure_ev, view.tone_curve)
     if view.background == "sky":
         colours = linear[..., :3] + (1 - linear[..., 3:]) * backdrop
         linear = np.concatenate([colours, np.ones_like(linear[..., 3:])], axis=-1)
-    return display(linear, view.exposure, view.tone_curve, WHITE if view.background == "white" else BLACK)
+    return display(linear, exposure_ev, view.tone_curve, WHITE if view.background == "white" else BLACK)
 
 
 def compare(
@@ -132,12 +135,13 @@ def compare(
     if on_progress is not None:
         on_progress(Progress("picture", REFERENCE_SHARE, "drawing the picture that is compared", 1.0))
     picture = converged(session, state, width, height)
-    judged = reference(found, state.view)
+    exposure = session.exposure_ev(state)
+    judged = reference(found, state.view, exposure)
     numbers = numbers_of(picture, judged)
     error = error_map(picture.linear, judged.linear)
     shown = {
-        "reference.png": displayed(found.linear, state.view, found.backdrop),
-        "picture.png": displayed(picture.linear, state.view, found.backdrop),
+        "reference.png": displayed(found.linear, state.view, exposure, found.backdrop),
+        "picture.png": displayed(picture.linear, state.view, exposure, found.backdrop),
         "error.png": error.rgb8,
     }
     return Comparison(

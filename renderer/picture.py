@@ -19,7 +19,7 @@ class Picture:
         rgb8: as displayed, (height, width, 3) uint8.
         samples: a pixel.
         render_ms: time on the GL thread.
-        meta: the document and the renderer.
+        meta: the document, the exposure (EV over 1 W m-2 sr-1) that displays it, and the renderer.
     """
 
     linear: np.ndarray

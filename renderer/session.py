@@ -22,7 +22,7 @@ from renderer.describing import described, listed
 from renderer.gl.thread import GLThread
 from renderer.picture import Frame, Picture
 from renderer.preparation import Preparation, following
-from renderer.view import Painter, Place, View, paint
+from renderer.view import Painter, Place, View, exposure_of, paint
 from renderer.world.sampling import offset
 from renderer.world.state import SceneState, migrate, samples_of
 
@@ -159,6 +159,12 @@ class Session:
                 on_progress(Progress("picture", done / samples, f"sample {done} of {samples}", left))
 
         return paint(self.gl, self._painter, state, self._arrays(state), (width, height), samples, place, tell)
+
+    def exposure_ev(self, state: SceneState) -> float:
+        """Stops by which a state's radiance [W m-2 sr-1] is brightened for display; blocks while it is baked."""
+        if not self.prepared(state):
+            self.prepare(state).future.result()
+        return exposure_of(state, self._arrays(state))
 
     def compute(self, bake: Bake, on_progress: Report | None = None) -> Arrays:
         """The arrays of one bake that may take minutes, from the cache or from a worker process; blocks.

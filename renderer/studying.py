@@ -21,25 +21,25 @@ from renderer.study.charts import write
 from renderer.study.sweep import FRAMES, Case, Drawn, append, clock, provenance, sweep
 from renderer.study.yardstick import Yardstick
 from renderer.truth import Judge, code_of, truth_bake
-from renderer.world.state import SceneState
+from renderer.world.state import SceneState, View
 
 if TYPE_CHECKING:
     from renderer.session import Session
 
 Tell = Callable[[float, str], None]
 
-SUNS: Mapping[str, tuple[float, float, float]] = {
-    "az180_el62": (180.0, 62.0, -7.6),
-    "az120_el20": (120.0, 20.0, -6.7),
-    "az090_el08": (90.0, 8.0, -5.7),
-    "az150_el40": (150.0, 40.0, -7.2),
-    "az210_el50": (210.0, 50.0, -7.4),
-    "az240_el30": (240.0, 30.0, -7.0),
-    "az270_el15": (270.0, 15.0, -6.4),
-    "az300_el05": (300.0, 5.0, -5.3),
+SUNS: Mapping[str, tuple[float, float]] = {
+    "az180_el62": (180.0, 62.0),
+    "az120_el20": (120.0, 20.0),
+    "az090_el08": (90.0, 8.0),
+    "az150_el40": (150.0, 40.0),
+    "az210_el50": (210.0, 50.0),
+    "az240_el30": (240.0, 30.0),
+    "az270_el15": (270.0, 15.0),
+    "az300_el05": (300.0, 5.0),
 }
-"""Azimuth and elevation of the study's suns, degrees, and the exposure that displays the scene under each, EV: from all
-sides, from near the horizon to summer noon. The first few alone already differ as much as they can."""
+"""Azimuth and elevation of the study's suns, degrees: from all sides, from near the horizon to summer noon. The first
+few alone already differ as much as they can."""
 
 SLOTS = ("shadow", "light", "geometry")
 """Slots whose techniques are combined, where none are named; the others keep their defaults."""
@@ -155,7 +155,7 @@ class Study:
         name = self._bake(case, judge) + state.view.model_dump_json()
         if name not in self._truths:
             found = truth(self.session, state, self.plan.size, self.plan.size, judge, self._inner)
-            self._truths[name] = reference(found, state.view)
+            self._truths[name] = reference(found, state.view, self.session.exposure_ev(state))
         return self._truths[name]
 
     def _inner(self, progress: Progress) -> None:
@@ -164,9 +164,9 @@ class Study:
 
 
 def light_of(name: str) -> dict[str, Any]:
-    """What a sun of the study sets: the sun as a document, and the exposure."""
-    azimuth, elevation, exposure = SUNS[name]
-    return {"sun": {"kind": "direction", "azimuth": azimuth, "elevation": elevation}, "exposure": exposure}
+    """What a sun of the study sets: the sun as a document, and the exposure, of which a preset may have its own."""
+    azimuth, elevation = SUNS[name]
+    return {"sun": {"kind": "direction", "azimuth": azimuth, "elevation": elevation}, "exposure": View().exposure}
 
 
 def measure_errors(

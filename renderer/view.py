@@ -14,7 +14,7 @@ from renderer.gl.targets import Accumulator, ToneMap
 from renderer.gl.thread import GLThread
 from renderer.picture import Frame, Picture
 from renderer.world.sampling import offset
-from renderer.world.state import SceneState, samples_of
+from renderer.world.state import SceneState, exposure_ev, samples_of
 
 Baked = Mapping[str, BakedArrays]
 Place = Callable[[int], tuple[float, float]]
@@ -46,24 +46,32 @@ class Painter:
             prepared = drawer.prepare(state, baked, sums.size, place(sample), sample)
             sums.draw(sample, lambda frame=prepared: drawer.draw(frame))  # type: ignore[misc]
 
-    def displayed(self, gl: GL, sums: Accumulator, state: SceneState) -> Any:
-        """The picture as displayed, (height, width, 3) uint8."""
+    def displayed(self, gl: GL, sums: Accumulator, state: SceneState, exposure: float) -> Any:
+        """The picture as displayed, (height, width, 3) uint8, at an exposure in EV."""
         if self._tone is None:
             self._tone = ToneMap(gl)
             gl.at_close(self._tone)
         self._tone.draw(
             sums.sum_texture,
-            exposure_ev=state.view.exposure,
+            exposure_ev=exposure,
             curve=state.view.tone_curve,
             background=WHITE if state.view.background == "white" else BLACK,
             samples=sums.samples,
         )
         return self._tone.read_rgb8()
 
-    def picture(self, gl: GL, state: SceneState, sums: Accumulator, render_ms: float) -> Picture:
+    def picture(self, gl: GL, state: SceneState, baked: Baked, sums: Accumulator, render_ms: float) -> Picture:
         """The finished picture of a sum of samples."""
-        meta = {"state": state.model_dump(mode="json"), "renderer": gl.info.renderer, "software": gl.info.software}
-        return Picture(sums.read_mean(), self.displayed(gl, sums, state), sums.samples, render_ms, meta)
+        exposure = exposure_of(state, baked)
+        meta = {"state": state.model_dump(mode="json"), "exposure_ev": exposure}
+        meta |= {"renderer": gl.info.renderer, "software": gl.info.software}
+        return Picture(sums.read_mean(), self.displayed(gl, sums, state, exposure), sums.samples, render_ms, meta)
+
+
+def exposure_of(state: SceneState, baked: Baked) -> float:
+    """Stops by which a state's radiance is brightened for display, EV."""
+    arrays = {name: entry.arrays for name, entry in baked.items()}
+    return exposure_ev(state.view, phenomenon(state.scene).metered_light(state, arrays))
 
 
 def paint(
@@ -88,7 +96,7 @@ def paint(
         for done in range(samples):
             on_sample(done)
             thread.submit(painter.add_samples, sums, state, baked, 1, place).result()
-        return thread.submit(painter.picture, state, sums, (time.perf_counter() - started) * 1e3).result()
+        return thread.submit(painter.picture, state, baked, sums, (time.perf_counter() - started) * 1e3).result()
     finally:
         thread.submit(_free_sums, sums)
 
@@ -151,16 +159,16 @@ class View:
         if self._sums.size != size:
             self._sums.resize(*size)
         wanted = samples_of(state.quality)
-        drawn = state.model_copy(
-            update={"view": state.view.model_copy(update={"exposure": 0.0, "tone_curve": "linear"}), "quality": None}
-        )
+        shown_alike = {"auto_exposure": False, "exposure": 0.0, "tone_curve": "linear"}
+        drawn = state.model_copy(update={"view": state.view.model_copy(update=shown_alike), "quality": None})
         shown = (drawn.model_dump_json(warnings=False), size)
         if shown != self._shown or self._sums.samples > wanted:
             self._sums.samples = 0
             self._shown = shown
         count = min(more, wanted - self._sums.samples)
-        self._painter.add_samples(gl, self._sums, state, self._arrays(state), count)
-        rgb8 = self._painter.displayed(gl, self._sums, state)
+        baked = self._arrays(state)
+        self._painter.add_samples(gl, self._sums, state, baked, count)
+        rgb8 = self._painter.displayed(gl, self._sums, state, exposure_of(state, baked))
         samples = self._sums.samples
         return Frame(
             rgb8,

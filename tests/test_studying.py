@@ -32,6 +32,9 @@ class Pretended:
     def prepared(self, state: Any) -> bool:
         return True
 
+    def exposure_ev(self, state: Any) -> float:
+        return 0.0
+
     def view(self) -> Any:
         def frame(state: Any, width: int, height: int) -> Any:
             self.shown.append(state)
@@ -83,7 +86,7 @@ def test_eight_suns_differ(session: Any) -> None:
     cases = [Case("noon", sun, {}, studying.light_of(sun)) for sun in studying.SUNS]
     states = [benching.state_of(session, "forest", case) for case in cases]
     assert len({state.sun.model_dump_json() for state in states}) == 8
-    assert {state.sun.elevation for state in states} == {elevation for _, elevation, _ in studying.SUNS.values()}
+    assert {state.sun.elevation for state in states} == {elevation for _, elevation in studying.SUNS.values()}
 
 
 def test_a_fingerprint_follows_what_is_drawn(session: Any) -> None:
@@ -108,7 +111,7 @@ def test_a_study_leaves_results_tables_and_charts(
     monkeypatch.setattr(
         studying,
         "reference",
-        lambda found, view: flat(1.01 if found[1] == "shadow" and found[0].light.kind == "gouraud" else 1.0),
+        lambda found, view, exposure_ev: flat(1.01 if found[1] == "shadow" and found[0].light.kind == "gouraud" else 1.0),
     )
     plan = Plan("forest", ("noon",), tuple(studying.SUNS)[:2], size=16).checked()
     told: list[float] = []

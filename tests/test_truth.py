@@ -157,6 +157,9 @@ class Drawing:
         linear[..., 3] = self.arrays["linear"][..., 3]
         return Picture(linear, np.zeros((8, 12, 3), np.uint8), samples, 1.0)
 
+    def exposure_ev(self, of: ForestState) -> float:
+        return of.view.exposure
+
 
 @pytest.mark.parametrize(("gain", "error"), [(1.0, 0.0), (2.0, 1.0)])
 def test_a_comparison_has_files_and_numbers(gain: float, error: float) -> None:
@@ -194,7 +197,7 @@ def test_a_reference_of_nothing_is_refused() -> None:
 def test_what_lies_behind_shows_through(background: Any, shown: int) -> None:
     half = np.full((1, 1, 4), 0.25)
     half[..., 3] = 0.5
-    view = View(exposure=0, tone_curve="linear", background=background)
-    found = comparing.displayed(half, view, np.full((1, 1, 3), 0.5))
+    view = View(tone_curve="linear", background=background)
+    found = comparing.displayed(half, view, 0.0, np.full((1, 1, 3), 0.5))
     assert found[0, 0] == pytest.approx(shown, abs=1)
-    assert comparing.displayed(half, view)[0, 0] == pytest.approx(137, abs=1)
+    assert comparing.displayed(half, view, 0.0)[0, 0] == pytest.approx(137, abs=1)

@@ -14,6 +14,7 @@ from renderer.core.errors import ShaderError, UmbrageError
 from renderer.forest import program
 from renderer.gl import source
 from renderer.session import Frame, Session, View
+from renderer.world.image import display
 from tests.forest import worlds
 from tests.test_session import furnish
 
@@ -110,8 +111,24 @@ def test_exposure_and_quality_keep_the_samples(session: Session, view: View) -> 
     assert brighter.samples == 4
     np.testing.assert_array_equal(brighter.rgb8, session.render(state(session, 4, view={"exposure": 2.0}), 32, 24).rgb8)
     assert draw(view, state(session, 8, view={"exposure": 2.0})).samples == 5
+    fixed = {"exposure": 2.0, "auto_exposure": False}
+    assert draw(view, state(session, 8, view=fixed)).samples == 6
     # Fewer than it has: they are not in the sum on their own any more.
     assert draw(view, state(session, 2, view={"exposure": 2.0})).samples == 1
+
+
+def test_the_exposure_follows_the_sun_unless_it_is_fixed(session: Session) -> None:
+    """A sinking sun is metered; the pixels are those of the radiance at the exposure that the picture names."""
+    stops = {}
+    for followed in (True, False):
+        for degrees in (60, 4):
+            view = {"auto_exposure": followed, "exposure": 0.5, "background": "none"}
+            picture = session.render(state(session, 2, sun=worlds.sun(200, degrees), view=view), 32, 24)
+            stops[followed, degrees] = picture.meta["exposure_ev"]
+            twin = display(picture.linear, picture.meta["exposure_ev"])
+            assert np.abs(picture.rgb8.astype(int) - twin).max() <= 1
+    assert stops[False, 4] == stops[False, 60]
+    assert stops[True, 4] > stops[True, 60] + 0.3
 
 
 def test_the_newest_state_wins(session: Session, view: View) -> None:

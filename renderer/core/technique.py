@@ -122,6 +122,7 @@ class Phenomenon:
         world: `(state, arrays of the bakes by name) -> plain arrays and numbers`: what is drawn, whatever the
             techniques, for a reference that shares no code with them.
         world_needs: names of the bakes that `world` reads.
+        metered_light: `(state, arrays of the bakes by name) -> W m-2`: how much light there is, for the exposure.
         probe: `(state, arrays of the bakes by name, x, y, (width, height)) -> facts` about a point of the picture, as
             JSON values.
     """
@@ -136,6 +137,7 @@ class Phenomenon:
     open: Callable[[Any], SceneRenderer]
     world: Callable[[Any, Mapping[str, Arrays]], dict[str, Any]]
     world_needs: tuple[str, ...]
+    metered_light: Callable[[Any, Mapping[str, Arrays]], float]
     probe: Callable[[Any, Mapping[str, Arrays], float, float, tuple[int, int]], dict[str, Any]]
 
 

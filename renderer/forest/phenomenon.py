@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
-from renderer.core.technique import Phenomenon, Preset, Slot
+from renderer.core.technique import Arrays, Phenomenon, Preset, Slot
 from renderer.forest.bakes import bakes
 from renderer.forest.probe import probe
 from renderer.forest.renderer import ForestRenderer
 from renderer.forest.state import DEFAULTS, ForestState
 from renderer.forest.world_arrays import NEEDS, world_arrays
+from renderer.world import sky
+from renderer.world.sun import angles
 
 SLOTS = (
     Slot(
@@ -65,6 +68,11 @@ def _sun(azimuth: float, elevation: float) -> dict[str, Any]:
     return {"kind": "direction", "azimuth": azimuth, "elevation": elevation}
 
 
+def _metered_light(state: ForestState, baked: Mapping[str, Arrays]) -> float:
+    """Light of sun and sky, W m-2."""
+    return sky.metered_light(baked["sky"], angles(state.sun)[1])
+
+
 PRESETS = {
     "noon": Preset(
         "Noon",
@@ -72,19 +80,19 @@ PRESETS = {
         {
             "camera": _orbit((200, 200, 280), 2300, 140, 30),
             "sun": _sun(190, 62),
-            "view": {"exposure": -7.4},
+            "view": {"exposure": 1.16},
             "filter": {"bias": 1.0},
         },
     ),
     "low_sun": Preset(
         "Low sun",
         "Late afternoon: long shadows from tree to tree.",
-        {"camera": _orbit((1150, -300, 265), 650, 305, 15), "sun": _sun(255, 18), "view": {"exposure": -6.2}},
+        {"camera": _orbit((1150, -300, 265), 650, 305, 15), "sun": _sun(255, 18), "view": {"exposure": 1.49}},
     ),
     "valley_sunset": Preset(
         "Valley at sunset",
         "The ridge has taken the sun from the valley floor.",
-        {"camera": _orbit((1600, -900, 400), 1500, 268, 5), "sun": _sun(292, 9), "view": {"exposure": -4.9}},
+        {"camera": _orbit((1600, -900, 400), 1500, 268, 5), "sun": _sun(292, 9), "view": {"exposure": 2.13}},
     ),
     "forest_edge": Preset(
         "Forest edge",
@@ -92,7 +100,7 @@ PRESETS = {
         {
             "camera": {"kind": "look", "eye": [964, 306, 81.5], "target": [975, 420, 84], "field_of_view": 50},
             "sun": _sun(160, 38),
-            "view": {"exposure": -7.0},
+            "view": {"exposure": 1.26},
         },
     ),
 }
@@ -108,5 +116,6 @@ PHENOMENON = Phenomenon(
     open=ForestRenderer,
     world=world_arrays,
     world_needs=NEEDS,
+    metered_light=_metered_light,
     probe=probe,
 )

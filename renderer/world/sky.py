@@ -31,6 +31,9 @@ from renderer.world.sun import ANGULAR_RADIUS
 SOLAR_CONSTANT = 1361.0
 """Irradiance of the sun above the air, in W m-2 (Kopp and Lean 2011)."""
 
+LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
+"""Weights of red, green and blue in luminance (ITU-R BT.709)."""
+
 NIGHT_RADIANCE = 1.7e-4 / 93.0
 """Radiance of the moonless night sky, in W m-2 sr-1: 22 magnitudes per square second of arc are 1.7e-4 cd m-2 (Leinert
 et al. 1998), at sunlight's 93 lm W-1."""
@@ -211,6 +214,23 @@ def sky_for(tables: Mapping[str, np.ndarray], elevation: float) -> SkyNow:
     share = visible_share(e)
     disc = sun / (math.pi * ANGULAR_RADIUS**2 * share) if share > 1e-3 else np.zeros(3)
     return SkyNow(sun, np.einsum("yxc,yx->c", view, irradiance_weights()), view.astype(np.float32), disc)
+
+
+def metered_light(tables: Mapping[str, np.ndarray], elevation: float) -> float:
+    """How much light there is, as the dome of an incident light meter that looks up sees it, in W m-2.
+
+    A dome answers a beam at angle a from its axis by (1 + cos a) / 2 (ISO 2720:1974, cardioid receptor), so that a low
+    sun, which hardly lights level ground but lights trees from the side, still counts. Colours weigh as in Rec. 709.
+    Deviation: the sky counts as on a level plane.
+
+    Args:
+        tables: from `bake_sky`.
+        elevation: of the sun, in radians.
+    """
+    suns = tables["elevations"]
+    sun = LUMINANCE @ [np.interp(elevation, suns, column) for column in tables["sun_irradiance"].T]
+    sky = LUMINANCE @ np.exp([np.interp(elevation, suns, column) for column in np.log(tables["sky_irradiance"]).T])
+    return float(0.5 * (1.0 + math.sin(elevation)) * sun + sky)
 
 
 def sky_uniforms(now: SkyNow, sun_direction: Floats) -> dict[str, tuple[float, float, float]]:

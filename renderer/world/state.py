@@ -5,6 +5,7 @@ One JSON document, the same at every door: what the page shares in its address, 
 
 from __future__ import annotations
 
+import math
 from typing import Annotated, Any, Literal
 
 from pydantic import Field
@@ -14,8 +15,14 @@ from renderer.core.params import Model, param
 from renderer.world.camera import Camera, Orbit
 from renderer.world.sun import Sun, SunDirection
 
-VERSION = 1
+VERSION = 2
 """Version of the document that this code writes."""
+
+NOON = 1000.0
+"""Light to which a fixed exposure is set, in W m-2: about that of a clear noon."""
+
+DARKEST = 0.5
+"""Least light to which the exposure adapts, in W m-2: that of civil twilight. Below it the picture darkens."""
 
 CONVERGED_SAMPLES = 64
 """Samples a pixel after which a picture counts as converged: an 8 x 8 grid of sub-pixel positions."""
@@ -56,10 +63,17 @@ def samples_of(quality: Draft | Samples | Converged) -> int:
 class View(Model):
     """How linear radiance becomes a picture."""
 
+    auto_exposure: bool = param(
+        True,
+        label="Follow the light",
+        help="Exposure follows the light of sun and sky; otherwise it stays at that of a clear noon.",
+        cost="host",
+        source="ISO 2720:1974, incident light with a cardioid receptor",
+    )
     exposure: float = param(
-        -6.5,
+        1.0,
         label="Exposure",
-        help="Stops by which radiance in W m-2 sr-1 is brightened.",
+        help="Stops above the exposure that shows an 18 % grey as it is; woods and meadows are about one darker.",
         unit="EV",
         cost="host",
         ge=-24,
@@ -79,7 +93,7 @@ class View(Model):
 class SceneState(Model):
     """Base of every scene's whole state. A subclass narrows `scene` to its own name and adds its slots."""
 
-    version: Literal[1] = param(VERSION, label="Version", help="Version of the document.", cost="host")
+    version: Literal[2] = param(VERSION, label="Version", help="Version of the document.", cost="host")
     scene: str = param("", label="Scene", help="Name of the scene.", cost="host", max_length=64)
     camera: Camera = param(Orbit(), label="Camera", help="Where the picture is taken from.", cost="host")
     sun: Sun = param(SunDirection(), label="Sun", help="Where the light comes from.", cost="host")
@@ -88,19 +102,42 @@ class SceneState(Model):
     time: float = param(0.0, label="Time", help="Time of what moves by itself.", unit="s", cost="host", ge=0, le=1e9)
 
 
-def migrate(document: Any) -> dict[str, Any]:
-    """A document of any older version, as this version writes it.
+def exposure_ev(view: View, light: float) -> float:
+    """Stops by which radiance in W m-2 sr-1 is brightened for display.
 
-    A document without a version is of version 1, the first there was.
+    A matt 18 % grey in that light sends 0.18 light / pi, and log2(pi / light) shows it as 0.18 of the screen's light by
+    the linear curve: so an incident light meter sets a camera. `view.exposure` comes on top. All depends on the state
+    and nothing on the picture, so that every door shows the same, and nothing flickers.
+
+    Args:
+        view: of a state.
+        light: of sun and sky, in W m-2, as the scene's `metered_light` says.
+    """
+    metered = max(light, DARKEST) if view.auto_exposure else NOON
+    return math.log2(math.pi / metered) + view.exposure
+
+
+def migrate(document: Any) -> dict[str, Any]:
+    """A document of any older version, as this version writes it; one without a version is of this one.
 
     Raises:
         InputError: no JSON object, a version that is no whole number, or one that this code does not know yet.
     """
     if not isinstance(document, dict):
         raise InputError("", "the state must be a JSON object")
-    version = document.get("version", 1)
+    version = document.get("version", VERSION)
     if isinstance(version, bool) or not isinstance(version, int):
         raise InputError("version", "must be a whole number", f"1 to {VERSION}")
     if not 1 <= version <= VERSION:
         raise InputError("version", "this server does not know documents of this version", f"1 to {VERSION}")
+    if version == 1:
+        document = {**document, "view": _view_of_first(document.get("view", {}))}
     return {**document, "version": VERSION}
+
+
+def _view_of_first(view: Any) -> Any:
+    """The view of a document of version 1, whose exposure was fixed and counted from 1 W m-2 sr-1, -6.5 by default."""
+    old = view.get("exposure", -6.5) if isinstance(view, dict) else None
+    if isinstance(old, bool) or not isinstance(old, (int, float)) or not -24 <= old <= 24:
+        return view  # refused by its name, like any other wrong value
+    return {**view, "auto_exposure": False, "exposure": min(old + math.log2(NOON / math.pi), 24.0)}

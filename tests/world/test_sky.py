@@ -21,6 +21,7 @@ from renderer.world.sky import (
     SkyNow,
     bake_sky,
     irradiance_weights,
+    metered_light,
     mie_phase,
     rayleigh_phase,
     sky_for,
@@ -63,6 +64,24 @@ def test_a_sky_of_radiance_one_gives_pi() -> None:
     assert weights.sum() == pytest.approx(math.pi, rel=1e-12)
     elevations, _ = view_directions()
     assert (weights * np.sin(elevations)[:, None]).sum() == pytest.approx(2.0 * math.pi / 3.0, rel=1e-3)
+
+
+@pytest.mark.parametrize(("degrees", "share"), [(90.0, 1.0), (30.0, 0.75), (0.0, 0.5)])
+def test_the_meter_is_a_dome(tables: Tables, degrees: float, share: float) -> None:
+    """A sun overhead counts whole and one on the horizon half (ISO 2720); the sky comes on top, green weighs most."""
+    white = {**tables, "sun_irradiance": np.full_like(tables["sun_irradiance"], 100.0)}
+    white["sky_irradiance"] = np.full_like(tables["sky_irradiance"], 7.0)
+    assert metered_light(white, math.radians(degrees)) == pytest.approx(100.0 * share + 7.0)
+    green = {**white, "sun_irradiance": white["sun_irradiance"] * [0.0, 1.0, 0.0]}
+    assert metered_light(green, math.radians(degrees)) == pytest.approx(71.52 * share + 7.0)
+
+
+def test_there_is_light_at_night_and_more_with_every_degree(tables: Tables) -> None:
+    """The meter never reads nothing, of which there is no logarithm, and never falls while the sun rises."""
+    read = [metered_light(tables, math.radians(degrees)) for degrees in range(-90, 91)]
+    assert read[0] > 0
+    assert np.all(np.diff(read) >= 0)
+    assert read[-1] == pytest.approx(1300, rel=0.05)
 
 
 @pytest.mark.parametrize("phase", [rayleigh_phase, mie_phase])

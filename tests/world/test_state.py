@@ -5,11 +5,26 @@ from __future__ import annotations
 import json
 from typing import Any
 
+import numpy as np
 import pytest
 
 from renderer.core.errors import InputError, InvalidDocument
 from renderer.core.params import validate
-from renderer.world.state import CONVERGED_SAMPLES, VERSION, Converged, Draft, Samples, SceneState, migrate, samples_of
+from renderer.world.image import display, srgb_decode
+from renderer.world.state import (
+    CONVERGED_SAMPLES,
+    DARKEST,
+    NOON,
+    VERSION,
+    Converged,
+    Draft,
+    Samples,
+    SceneState,
+    View,
+    exposure_ev,
+    migrate,
+    samples_of,
+)
 
 
 def test_a_document_survives_json() -> None:
@@ -24,10 +39,44 @@ def test_qualities_say_their_samples() -> None:
     assert [samples_of(q) for q in (Draft(), Samples(n=7), Converged())] == [1, 7, CONVERGED_SAMPLES]
 
 
-def test_a_document_without_version_is_of_the_first() -> None:
-    """Links from before the field was required still open."""
-    assert migrate({"time": 3}) == {"time": 3, "version": VERSION}
-    assert migrate({"version": 1, "time": 3}) == {"time": 3, "version": 1}
+def test_a_document_without_version_is_of_this_one() -> None:
+    """What is written by hand means what the documentation says today."""
+    assert migrate({"view": {"exposure": 3}}) == {"view": {"exposure": 3}, "version": VERSION}
+
+
+@pytest.mark.parametrize(("view", "old"), [
+    ({"exposure": -7.4, "tone_curve": "linear"}, -7.4), ({}, -6.5), (None, -6.5),
+])
+def test_a_link_of_version_one_keeps_its_brightness(view: dict[str, Any] | None, old: float) -> None:
+    """Its exposure was fixed, in stops over 1 W m-2 sr-1; it stays so under any light."""
+    document = {"version": 1} if view is None else {"version": 1, "view": view}
+    state = validate(SceneState, migrate(document))
+    for light in (0.0, 30.0, 1200.0):
+        assert exposure_ev(state.view, light) == pytest.approx(old, abs=1e-9)
+    assert state.view.tone_curve == (view or {}).get("tone_curve", "filmic")
+
+
+@pytest.mark.parametrize("wrong", [{"exposure": "x"}, {"exposure": True}, {"exposure": 10**400}, 3])
+def test_a_wrong_view_of_version_one_is_refused_by_its_name(wrong: Any) -> None:
+    """It is passed on as it is, for validation to answer."""
+    with pytest.raises(InvalidDocument) as refused:
+        validate(SceneState, migrate({"version": 1, "view": wrong}))
+    assert refused.value.errors[0].field.startswith("view")
+
+
+@pytest.mark.parametrize("light", [DARKEST, 40.0, 1100.0])
+def test_a_grey_card_is_shown_as_it_is(light: float) -> None:
+    """Matt 18 % grey, by the linear curve, without compensation; one stop doubles it."""
+    card = np.full((1, 1, 3), 0.18 * light / np.pi)
+    shown = [display(card, exposure_ev(View(exposure=stops), light), "linear")[0, 0, 0] for stops in (0.0, 1.0)]
+    assert srgb_decode(np.array(shown) / 255) == pytest.approx([0.18, 0.36], rel=0.01)
+
+
+def test_night_falls_and_a_fixed_exposure_stays() -> None:
+    """Below civil twilight the exposure follows the light no further."""
+    assert exposure_ev(View(), 1e-6) == exposure_ev(View(), DARKEST) > exposure_ev(View(), 2 * DARKEST)
+    fixed = View(auto_exposure=False)
+    assert exposure_ev(fixed, 1.0) == exposure_ev(fixed, 500.0) == exposure_ev(View(), NOON)
 
 
 @pytest.mark.parametrize("version", [VERSION + 1, 0, "1", True, None])
@@ -54,6 +103,7 @@ def test_only_objects_are_documents(document: Any) -> None:
         ({"view": {"exposure": float("nan")}}, "view.exposure"),
         ({"view": {"tone_curve": "reinhard"}}, "view.tone_curve"),
         ({"view": {"background": "#fff"}}, "view.background"),
+        ({"view": {"auto_exposure": 1}}, "view.auto_exposure"),
         ({"time": -1}, "time"),
         ({"colour": 1}, "colour"),
         ({"sun": {"kind": "moon"}}, "sun.kind"),
