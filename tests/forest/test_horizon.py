@@ -1,4 +1,4 @@
-"""Horizons of the land and of the canopy: closed forms, and brute force along rays."""
+"""Horizons of the land and of the canopy: sectors of sweeps, closed forms, and a plain search."""
 
 from __future__ import annotations
 
@@ -6,12 +6,13 @@ import math
 
 import numpy as np
 import pytest
-from scipy.ndimage import gaussian_filter, map_coordinates
+from scipy.ndimage import gaussian_filter
 
 from renderer.forest.canopy_horizon import THRESHOLD, bake_canopy_horizon, solid_tops
-from renderer.forest.terrain_horizon import AZIMUTHS, bake_terrain_horizon, sector_range, sweep
+from renderer.forest.terrain_horizon import AZIMUTHS, bake_terrain_horizon, sector_range
 from renderer.forest.tiles import lattice
 from renderer.forest.world_scale import CANOPY_HEIGHT, CELL
+from renderer.world.horizon_sweep import sweep as slopes
 
 
 def silent(share: float, words: str) -> None:
@@ -24,55 +25,9 @@ def hills(side: int = 160) -> np.ndarray:
     return land - land.min()
 
 
-def brute(heights: np.ndarray, row: int, column: int, azimuth: float) -> float:
-    """Horizon elevation [rad] by dense samples of the bilinear surface along the ray, in float64."""
-    distance = np.arange(0.2, heights.shape[0] * CELL * 1.5, 0.2)
-    rows, columns = row - math.cos(azimuth) * distance / CELL, column + math.sin(azimuth) * distance / CELL
-    inside = (rows >= 0) & (rows <= heights.shape[0] - 1) & (columns >= 0) & (columns <= heights.shape[1] - 1)
-    seen = map_coordinates(heights, [rows[inside], columns[inside]], order=1)
-    return max(0.0, math.atan(((seen - heights[row, column]) / distance[inside]).max(initial=0.0)))
-
-
-def test_a_wall_is_seen_at_its_slope_from_one_side_only():
-    heights = np.zeros((40, 60))
-    heights[:, 50] = 30.0
-    east, west = sweep(heights, CELL, math.pi / 2), sweep(heights, CELL, -math.pi / 2)
-    distance = CELL * (50 - np.arange(50))
-    np.testing.assert_allclose(east[20, :50], np.arctan(30 / distance), rtol=1e-5)
-    assert east[:, 50:].max() == 0
-    assert west[:, :51].max() == 0
-    np.testing.assert_allclose(west[20, 51:], np.arctan(30 / (CELL * (np.arange(51, 60) - 50))), rtol=1e-5)
-
-
-def test_a_peak_to_the_north_is_seen_to_the_north():
-    heights = np.zeros((41, 41))
-    heights[5, 20] = 100.0
-    assert sweep(heights, CELL, 0.0)[30, 20] == pytest.approx(math.atan(100 / (25 * CELL)), rel=1e-5)
-    assert sweep(heights, CELL, math.pi)[30, 20] == 0
-    assert sweep(heights, CELL, math.pi)[0, 20] == pytest.approx(math.atan(100 / (5 * CELL)), rel=1e-5)
-
-
-def errors(turn: float) -> np.ndarray:
-    """Sweep against brute force [deg], over nodes and azimuths; `turn` spoils the azimuth."""
-    heights, rng = hills(), np.random.default_rng(8)
-    found = []
-    for azimuth in rng.uniform(0, 2 * math.pi, 8):
-        swept = sweep(heights, CELL, azimuth + turn)
-        for row, column in rng.integers(3, 157, (25, 2)):
-            found.append(math.degrees(swept[row, column] - brute(heights, row, column, azimuth)))
-    return np.abs(found)
-
-
-def test_a_sweep_agrees_with_rays():
-    """Budget: interpolation between lines half a cell apart, largest where the nearest cells make the horizon."""
-    off = errors(0.0)
-    assert np.median(off) < 0.05
-    assert np.quantile(off, 0.9) < 0.7
-    assert off.max() < 4.0
-
-
-def test_a_turned_sweep_is_noticed():
-    assert np.median(errors(math.radians(5))) > 0.15
+def sweep(heights: np.ndarray, azimuth: float) -> np.ndarray:
+    """Elevation of the horizon [rad] at every node, at least 0."""
+    return np.arctan(np.maximum(slopes(heights, (CELL, CELL), azimuth), 0))
 
 
 @pytest.mark.parametrize("sectors", [4, 32])
@@ -83,7 +38,7 @@ def test_sectors_take_the_highest_of_their_azimuths(sectors):
     assert baked.dtype == np.float32
     assert baked.min() >= 0
     for sector in (0, 1, sectors - 1):
-        members = [sweep(heights, CELL, 2 * math.pi * n / AZIMUTHS) for n in sector_range(sector, sectors, AZIMUTHS)]
+        members = [sweep(heights, 2 * math.pi * n / AZIMUTHS) for n in sector_range(sector, sectors, AZIMUTHS)]
         np.testing.assert_allclose(baked[sector], np.max(members, axis=0), atol=1e-6)
         middle = np.array(sector_range(sector, sectors, AZIMUTHS))[len(members) // 2]
         assert middle == sector * AZIMUTHS // sectors
