@@ -46,6 +46,7 @@ uniform float canopy_height;      // m
 uniform float canopy_top;         // m, no tree is taller
 uniform float scene_top;          // m, nothing stands higher
 uniform float scene_reach;        // m, nothing farther is drawn
+uniform float scene_fade;         // m, over which the land beyond the square fades out
 uniform vec3 sun_direction;
 uniform float sun_elevation;      // rad
 uniform vec3 sun_irradiance;      // W m-2
@@ -88,7 +89,9 @@ void main() {
     float level = level_at(found.x, jitter.z);
     float reached = found.y == NOTHING ? 0.0 : 1.0;
     vec4 place = vec4(origin + reached * found.x * direction, found.y);
-    radiance = vec4(reached * outgoing(place, vec4(voxel.xyz * 65535.0, 0.0), level), voxel.w);
+    // A ray that reached nothing has no place: the faded share comes off the opacity of the others, right in the mean.
+    float faded = reached * (1.0 - land_kept(place.xy));
+    radiance = vec4((reached - faded) * outgoing(place, vec4(voxel.xyz * 65535.0, 0.0), level), voxel.w - faded);
 #if BACKGROUND_SKY == 1
     radiance.rgb += (1.0 - radiance.a) * (sky_radiance(direction) + sky_sun_disc(direction));
     radiance.a = 1.0;
@@ -125,7 +128,7 @@ def shade_source(state: ForestState) -> Source:
     slots = tuple(slot for slot in state.techniques() if slot != "geometry")
     body = SHADE_BODY
     sky = state.view.background == "sky"
-    return _composed(_chosen(state, slots), (), ("forest/shade.glsl",), body, sky)
+    return _composed(_chosen(state, slots), (), ("forest/fading.glsl", "forest/shade.glsl"), body, sky)
 
 
 def _chosen(state: ForestState, slots: tuple[str, ...]) -> Chosen:

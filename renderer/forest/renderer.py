@@ -12,7 +12,7 @@ from renderer.core.params import uniforms
 from renderer.core.technique import BakedArrays
 from renderer.forest.program import SCOUT_BLOCKS, TRACE_SLOTS, pass_source, scout_source, shade_source, trace_source
 from renderer.forest.textures import bilinear_cells, ground_textures, pattern_textures, tile_map
-from renderer.forest.world_scale import CANOPY_HEIGHT, CELL, NODES, REACH, TILE_SIDE, VOXEL
+from renderer.forest.world_scale import CANOPY_HEIGHT, CELL, FADE, NODES, REACH, TILE_SIDE, VOXEL
 from renderer.gl.context import GL
 from renderer.gl.layers import Layers, LayerStore
 from renderer.gl.program import AnyTexture
@@ -105,6 +105,7 @@ class ForestRenderer:
             "voxel_size": VOXEL,
             "canopy_height": CANOPY_HEIGHT,
             "scene_reach": REACH,
+            "scene_fade": FADE,
             "sun_direction": sun,
             "sun_elevation": angles(state.sun)[1],
             "sun_irradiance": now.sun_irradiance,

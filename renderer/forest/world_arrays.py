@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from renderer.core.technique import Arrays
-from renderer.forest.world_scale import CANOPY_HEIGHT, CELL, REACH, TILE_SIDE, VOXEL
+from renderer.forest.world_scale import CANOPY_HEIGHT, CELL, FADE, REACH, TILE_SIDE, VOXEL
 from renderer.world.sky import sky_for, sky_radiance, sky_sun_disc
 from renderer.world.sun import angles, direction
 
@@ -46,6 +46,7 @@ def world_arrays(state: ForestState, baked: Mapping[str, Arrays]) -> dict[str, A
         "tile_side": TILE_SIDE,
         "voxel": VOXEL,
         "reach": REACH,
+        "fade": FADE,
         **{name: np.asarray(pattern[name]) for name in ("colour", "normal", "anchor", "tile")},
         "seed": state.ground.map_seed,
         "tint_strength": state.ground.tint_strength,

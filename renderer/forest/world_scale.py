@@ -20,5 +20,8 @@ VOXEL = 0.625
 REACH = 30000.0
 """Distance [m] beyond which nothing of the forest is drawn."""
 
+FADE = 1500.0
+"""Distance [m] from the square over which the land beyond it, of which nothing is known, fades into the sky."""
+
 STAND_TOP = 15.0
 """Height of a closed stand's surface over the ground [m]: what its edge casts on a glade."""

@@ -13,14 +13,13 @@ import math
 import numpy as np
 from numba import njit
 
-from renderer.reference.forest_lookup import bilinear, foot, ground_normal, texel, tint, voxel_at
+from renderer.reference.forest_lookup import bilinear, foot, ground_normal, kept, patches, texel, tint, voxel_at
 from renderer.reference.forest_march import (
     ALL,
     COLUMNS,
     DS,
     FULL,
     GROUND,
-    LEFT,
     NONE,
     NOT_OWN,
     ONLY_OWN,
@@ -38,9 +37,6 @@ NOMINAL_ALBEDO = 0.1
 
 DEPTH_LIMIT = 9.2
 """Optical depth after which a march stops: a ten-thousandth of the light is left, and takes the colour of the rest."""
-
-SOIL = 0.37
-"""How much finer the patches of the ground are than the trees' variation of colour."""
 
 LIFT = 1e-3
 """Metres above the ground at which its shadow rays start, so that rounding does not make a facet shade itself."""
@@ -97,8 +93,10 @@ def _canopy_light(scene, switches, x, y, event, voxel, out):
 
 @njit(cache=True, nogil=True)
 def _ground_light(scene, switches, x, y, z, step, empty, share, voxel, total):
-    """Add the light that bare ground sends up, times `share`."""
-    soil = 1.0 + scene.patches * tint(SOIL * x, SOIL * y)
+    """Add the light that bare ground sends up, times `share`, and its opacity."""
+    share *= kept(scene, x, y)
+    total[3] += share
+    soil = 1.0 + scene.patches * patches(x, y)
     nx, ny, nz = ground_normal(scene, x, y)
     ambient = 1.0
     if bilinear(scene.cover, scene.cell, x, y) > 0.5:
@@ -130,16 +128,17 @@ def _seen(scene, switches, o, d, event, step, empty):
 def _scatter(
     scene, switches, o, d, record, light, n, tau, shadow_step, quantum, seed, pixel, first, empty, voxel, total
 ):
-    """Add what n recorded steps scatter, from optical depth `tau` on.
+    """Add what n recorded steps scatter, from optical depth `tau` on, and their opacity.
 
     Returns the variance of the mean over channels, and the number of random numbers used.
     """
     sum_sun = 0.0
     for e in range(n):
         depth = record[e, SIGMA] * record[e, DS]
-        weight = math.exp(-tau) * -math.expm1(-depth)
-        tau += depth
         x, y = o[0] + d[0] * record[e, S], o[1] + d[1] * record[e, S]
+        weight = math.exp(-tau) * -math.expm1(-depth) * kept(scene, x, y)
+        tau += depth
+        total[3] += weight
         _canopy_light(scene, switches, x, y, record[e], voxel, light[e])
         for c in range(3):
             total[c] += weight * light[e, c]
@@ -184,7 +183,7 @@ def rows(scene, switches, origins, directions, behind, first, last, step_of, qua
         quantum: unshadowed sunlight (mean radiance) per shadow ray; 0 gives every step its own.
     """
     record, light = np.empty((512, COLUMNS)), np.empty((512, 6))
-    empty, voxel, total = np.empty((0, COLUMNS)), np.empty(8), np.zeros(3)
+    empty, voxel, total = np.empty((0, COLUMNS)), np.empty(8), np.zeros(4)
     width = origins.shape[1]
     shadow_step = step_of[2]
     nowhere = (0.0, 0.0)
@@ -208,15 +207,10 @@ def rows(scene, switches, origins, directions, behind, first, last, step_of, qua
             if status == OPAQUE:
                 # what lies beyond the limit is taken to scatter like what lies before it
                 total /= 1.0 - through
-                through = 0.0
             elif status == GROUND:
                 _ground_light(scene, switches, o[0] + d[0] * s, o[1] + d[1] * s, o[2] + d[2] * s, shadow_step, empty,
                               through, voxel, total)
-                through = 0.0
-            elif status == LEFT:
-                for c in range(3):
-                    total[c] += through * behind[row, column, c]
             for c in range(3):
-                picture[row, column, c] += total[c]
-            picture[row, column, 3] += 1.0 - through
+                picture[row, column, c] += total[c] + (1.0 - total[3]) * behind[row, column, c]
+            picture[row, column, 3] += total[3]
             variances[row, column] += variance

@@ -162,3 +162,47 @@ def extinction(scene: Scene, alpha: float) -> float:
 def tint(x: float, y: float) -> float:
     """Smooth value in [-1, 1] that varies from tree to tree, of a foot in metres."""
     return math.sin(x * 0.37 + 1.3 * math.sin(y * 0.11)) * math.sin(y * 0.41 + 1.7 * math.sin(x * 0.13))
+
+
+COARSE, FINE = 25.0, 10.0
+"""Metres between the nodes of the two octaves of the ground's patches."""
+
+COARSE_SHARE = 0.65
+"""Weight of the coarse octave."""
+
+
+@njit(cache=True, nogil=True)
+def _node(i: int, j: int, kind: int) -> float:
+    """Value in [-1, 1) of a node of the noise: the hash's upper 24 bits."""
+    return 2.0 * (edge_hash(i, j, kind, 0) >> 8) / 2.0**24 - 1.0
+
+
+@njit(cache=True, nogil=True)
+def _octave(x: float, y: float, kind: int) -> float:
+    """Value noise on the unit lattice, t^2 (3 - 2 t) between nodes."""
+    i, j = math.floor(x), math.floor(y)
+    u, v = x - i, y - j
+    u, v = u * u * (3.0 - 2.0 * u), v * v * (3.0 - 2.0 * v)
+    low = (1.0 - u) * _node(i, j, kind) + u * _node(i + 1, j, kind)
+    high = (1.0 - u) * _node(i, j + 1, kind) + u * _node(i + 1, j + 1, kind)
+    return (1.0 - v) * low + v * high
+
+
+@njit(cache=True, nogil=True)
+def patches(x: float, y: float) -> float:
+    """Smooth value in [-1, 1] without a period, by which the brightness of bare ground varies; x, y in metres.
+
+    Two octaves of value noise (Perlin 1985), hashed as kinds 5 and 6; the fine one is turned by the angle whose cosine
+    is 0.8.
+    """
+    coarse = _octave(x / COARSE, y / COARSE, 5)
+    fine = _octave((0.8 * x - 0.6 * y) / FINE, (0.6 * x + 0.8 * y) / FINE, 6)
+    return COARSE_SHARE * coarse + (1.0 - COARSE_SHARE) * fine
+
+
+@njit(cache=True, nogil=True)
+def kept(scene: Scene, x: float, y: float) -> float:
+    """Share of what stands at a place that is seen: 1 in the square, fading with the distance beyond it."""
+    half = 0.5 * (scene.elevation.shape[0] - 1) * scene.cell
+    east, north = max(abs(x) - half, 0.0), max(abs(y) - half, 0.0)
+    return math.exp(-(east * east + north * north) / (scene.fade * scene.fade))

@@ -56,6 +56,7 @@ class ForestWorld:
         sun: unit vector to the sun.
         reach: distance along a ray beyond which nothing is met, m: the ground continues without end, and a ray that
             skims it must be let go.
+        fade: distance from the square over which what lies beyond it fades from view, m: exp(-(distance / fade)^2).
         background: radiance behind everything for directions (M, 3) -> (M, 3); None leaves it empty (alpha < 1).
     """
 
@@ -76,6 +77,7 @@ class ForestWorld:
     e_sky: Colour3
     sun: Colour3
     reach: float = 5e4
+    fade: float = math.inf
     background: Callable[[Floats], Floats] | None = None
     patches: float = 0.0
 
@@ -101,6 +103,8 @@ class ForestWorld:
         for name in ("cell", "canopy_height", "tile_side", "voxel", "reach"):
             if not (math.isfinite(getattr(self, name)) and getattr(self, name) > 0):
                 raise InputError(name, "must be a positive length")
+        if not self.fade > 0:
+            raise InputError("fade", "must be a positive length, or infinite")
         if not (np.isfinite(self.elevation).all() and np.isfinite(self.cover).all()):
             raise InputError("elevation", "or cover holds values that are not finite")
         if not math.isclose(sum(c * c for c in self.sun), 1.0, abs_tol=1e-6):
@@ -134,6 +138,7 @@ class Scene(NamedTuple):
     e_sky: Floats
     sun: Floats
     reach: float
+    fade: float
 
 
 NOWHERE, EVERYWHERE, SOMEWHERE = 0, 1, 2
@@ -154,7 +159,7 @@ def prepare(world: ForestWorld) -> Scene:
         safe=_safe(world.colour[..., 3]), tile=np.ascontiguousarray(world.tile, np.uint8), seed=int(world.seed),
         tint=float(world.tint_strength), patches=float(world.patches), ground=np.array(world.ground_albedo, np.float64),
         e_sun=np.array(world.e_sun, np.float64), e_sky=np.array(world.e_sky, np.float64),
-        sun=np.array(world.sun, np.float64), reach=float(world.reach))
+        sun=np.array(world.sun, np.float64), reach=float(world.reach), fade=float(world.fade))
 
 
 def _block_top(z: Floats) -> Floats:

@@ -2,8 +2,7 @@
 // Symbols: E_sun sun_irradiance [W/m2, normal to the beam], E_sky sky light [W/m2], V shadow_visibility, f light_factor, a ambient share.
 // The slots' functions are composed in front of this file.
 
-// Patches of the ground are this much finer than the trees' variation.
-const float GROUND_PATCH = 0.37;
+#include "forest/patches.glsl"
 
 const float INVERSE_PI = 0.3183098861837907;
 
@@ -18,7 +17,7 @@ vec3 outgoing(vec4 place, vec4 voxel, float level) {
     float ambient = mix(1.0, texel.a, wooded) * (on_ground ? 0.5 + 0.5 * slope.z : 1.0);
     float factor = mix(1.0, height_factor(h), wooded);
     vec3 leaf = albedo_of(voxel) * (1.0 + ground_tint_strength * tint_of(foot_of(place.xy, voxel)));
-    vec3 soil = ground_albedo * (1.0 + ground_patches * tint_of(GROUND_PATCH * place.xy));
+    vec3 soil = ground_albedo * (1.0 + ground_patches * patches_at(place.xy));
     vec3 albedo = on_ground ? soil : leaf;
     float visible = shadow_visibility(place.xyz, h, uv);
     return albedo * INVERSE_PI * (sun_irradiance * visible * light_factor(normal, slope) + sky_light(ambient)) * factor;
