@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import contextlib
 import json
+import multiprocessing
 import os
 import shutil
 import threading
 import time
 from collections.abc import Iterator
+from concurrent.futures import ProcessPoolExecutor
 from typing import Any
 
 import numpy as np
@@ -16,11 +18,12 @@ import uvicorn
 from websockets.sync.client import ClientConnection, connect
 
 from server.app import create_app
-from server.cli_serve import configure
+from server.cli_serve import configure, share_fairly
 from server.encode import MOVING_QUALITY, RESTING_QUALITY, encode
 from server.facade import RenderSession
 from server.protocol import unpack
 from server.settings import Settings
+from server.sockets import bind
 
 BROWSERS = ("chromium", "chromium-browser", "google-chrome")
 REPEATS = 20
@@ -77,9 +80,9 @@ def small_jpeg(rgb8: np.ndarray, limit: int) -> bytes:
 def serving(session: RenderSession) -> Iterator[str]:
     """A server of this session on a free port, by its address, until the end."""
     settings = Settings(port=0)
-    config = configure(create_app(session, settings), settings)
-    listener = config.bind_socket()
-    server = uvicorn.Server(config)
+    listener = bind(settings)
+    share_fairly()
+    server = uvicorn.Server(configure(create_app(session, settings), settings))
     thread = threading.Thread(target=lambda: server.run(sockets=[listener]), name="bench")
     thread.start()
     try:
@@ -88,9 +91,16 @@ def serving(session: RenderSession) -> Iterator[str]:
     finally:
         server.should_exit = True
         thread.join()
+        listener.close()
 
 
 def browser(address: str, seconds: float = 5.0, moves: int = 30) -> dict[str, Any]:
+    """`in_browser`, from a process of its own: what drives the browser must not share the server's interpreter."""
+    with ProcessPoolExecutor(1, mp_context=multiprocessing.get_context("spawn")) as apart:
+        return apart.submit(in_browser, address, seconds, moves).result()
+
+
+def in_browser(address: str, seconds: float, moves: int) -> dict[str, Any]:
     """Latency of single pointer moves on a quiet page, and pictures a second while dragging, in headless Chromium.
 
     Args:

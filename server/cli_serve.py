@@ -22,6 +22,10 @@ from server.sockets import FairProtocol, bind
 GRACE_S = 5
 """How long open requests may take to end once the server is asked to stop."""
 
+SWITCH_S = 0.0005
+"""How long a thread of Python may keep the others waiting: between drawing, encoding and sending a picture there are
+five changes of thread, and Python's own 5 ms for each would be as long as the picture."""
+
 
 def add(commands: Any) -> None:
     """Declare the commands."""
@@ -53,6 +57,11 @@ def configure(app: Any, settings: Settings) -> uvicorn.Config:
     )
 
 
+def share_fairly() -> None:
+    """Let the threads of this process take turns as often as a server of pictures needs."""
+    sys.setswitchinterval(SWITCH_S)
+
+
 def address(settings: Settings, port: int) -> str:
     """The page's address, as a person types it."""
     host = "127.0.0.1" if settings.host in ("0.0.0.0", "::") else settings.host
@@ -65,6 +74,7 @@ def serve(given: argparse.Namespace) -> int:
     settings = load(host=given.host, port=given.port, token=given.token).secured()
     with bind(settings) as listener, Session() as session:
         config = configure(create_app(session, settings, warm=True), settings)
+        share_fairly()
         info = session.gl.info
         print(f"Umbrage draws with {info.renderer}{' (software)' if info.software else ''}.")
         print(f"Open {address(settings, listener.getsockname()[1])}", flush=True)
