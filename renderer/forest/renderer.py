@@ -29,6 +29,9 @@ if TYPE_CHECKING:
 Baked = Mapping[str, BakedArrays]
 Prepared = tuple[Source, dict[str, AnyTexture], dict[str, Any]]
 
+SCOUTS_KEPT = 1 << 20
+"""Bytes of scouted distances kept for each size of block: the last few cameras'."""
+
 TRACES_KEPT = 64 << 20
 """Bytes of traced samples kept: sixteen of 512 x 512, so that a moved sun only lights them again."""
 
@@ -40,6 +43,7 @@ class ForestRenderer:
         self._gl = gl
         self._baked = Resident(gl, 16)
         self._moment = Resident(gl, 24)
+        self._scouts = {side: LayerStore(gl, ((1, "f4"),), SCOUTS_KEPT) for side in SCOUT_BLOCKS}
         self._traces = LayerStore(gl, ((2, "f4"), (4, "nu2")), TRACES_KEPT)
         self._bounds: dict[tuple[str, str], dict[str, Any]] = {}
 
@@ -75,6 +79,8 @@ class ForestRenderer:
         self._baked.release()
         self._moment.release()
         self._traces.release()
+        for store in self._scouts.values():
+            store.release()
 
     def _world_textures(self, state: ForestState, baked: Baked) -> dict[str, AnyTexture]:
         ground, pattern = baked["terrain"], baked["pattern"]
@@ -184,19 +190,17 @@ class ForestRenderer:
     ) -> AnyTexture:
         """Where the rays of each block of pixels begin; the same until the camera, the ground or the trees change."""
 
-        def draw() -> dict[str, Target]:
-            found = dict(textures)
-            targets = {}
-            for number, side in enumerate(SCOUT_BLOCKS):
-                target = Target(self._gl, -(-size[0] // side), -(-size[1] // side), components=1)
-                targets[f"{side}"] = self._draw_into(target, scout_source(number), values, found)
-                found["scout"] = target.texture
-            return targets
+        key = (state.camera, size, baked["terrain"].key, baked["pattern"].key)
+        found = dict(textures)
+        for number, (side, store) in enumerate(self._scouts.items()):
 
-        key = ("scout", state.camera, size, baked["terrain"].key, baked["pattern"].key)
-        made = self._moment.get(key, draw)[f"{SCOUT_BLOCKS[-1]}"]
-        assert isinstance(made, Target)
-        return made.texture
+            def draw(layers: Layers, number: int = number) -> None:
+                layers.use()
+                run_fullscreen(self._gl, scout_source(number), found, values)
+
+            blocks = (-(-size[0] // side), -(-size[1] // side))
+            found["scout"] = store.get(key, blocks, draw)[0]
+        return found["scout"]
 
     def _traced(
         self,
