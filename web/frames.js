@@ -11,6 +11,18 @@ export function parse(buffer) {
   return { header: JSON.parse(text), image: new Uint8Array(buffer, HEADER_BYTES + length) };
 }
 
+/** An image of a movement is decoded where it lies, if the browser can; a blob would first be handed to another process. */
+async function decoded(image, codec) {
+  const type = MIME[codec];
+  if (codec !== "jpeg" || !("ImageDecoder" in window)) return createImageBitmap(new Blob([image], { type }));
+  const decoder = new ImageDecoder({ data: image, type });
+  try {
+    return (await decoder.decode()).image;
+  } finally {
+    decoder.close();
+  }
+}
+
 /**
  * Decodes and draws frames, oldest dropped when a newer one of the same stream was drawn already.
  *
@@ -33,7 +45,7 @@ export class Frames {
     this.stats.arrive();
     const early = this.stats.decoding <= AHEAD;
     if (early) this.link.ack(header.sequence);
-    const bitmap = await createImageBitmap(new Blob([image], { type: MIME[header.codec] })).catch(() => null);
+    const bitmap = await decoded(image, header.codec).catch(() => null);
     this.stats.decoding -= 1;
     if (!early) this.link.ack(header.sequence);
     if (bitmap) this.draw(header, bitmap, buffer.byteLength, arrived);

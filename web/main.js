@@ -21,6 +21,7 @@ import { SunBar } from "./timeline.js";
 import { Upload } from "./upload.js";
 
 const NARROW = "(max-width: 799px)";
+const DRAGGED_MS = 150;
 const find = (selector) => document.querySelector(selector);
 
 const store = new Store();
@@ -139,14 +140,28 @@ async function pasted() {
 }
 
 let stale = false;
-const refresh = perFrame(() => {
+let refreshed = 0;
+let waitingToRefresh = null;
+const refreshNow = perFrame(() => {
   if (!store.document || !store.scene) return;
+  refreshed = performance.now();
   panels.refresh(stale);
   sunBar.refresh(stale);
   stale = false;
   tools.undo.disabled = !store.past.length;
   tools.redo.disabled = !store.future.length;
 });
+
+/** Controls follow the document; a few times a second while the picture is dragged, because the picture comes first. */
+function refresh() {
+  if (waitingToRefresh) return;
+  const wait = pointer.pointers.size ? refreshed + DRAGGED_MS - performance.now() : 0;
+  if (wait <= 0) refreshNow();
+  else waitingToRefresh = setTimeout(() => {
+    waitingToRefresh = null;
+    refreshNow();
+  }, wait);
+}
 
 const KEYS = { KeyH: () => document.body.classList.toggle("bare"), Slash: () => tools.help.click() };
 

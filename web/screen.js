@@ -38,9 +38,10 @@ export class Screen extends EventTarget {
   /** Copy a picture into its canvas, which takes the picture's size: the compositor stretches it at no cost of ours. */
   draw(stream, bitmap) {
     const canvas = this.canvases[stream];
-    if (canvas.width !== bitmap.width || canvas.height !== bitmap.height) {
-      canvas.width = bitmap.width;
-      canvas.height = bitmap.height;
+    const [width, height] = [bitmap.displayWidth ?? bitmap.width, bitmap.displayHeight ?? bitmap.height];
+    if (canvas.width !== width || canvas.height !== height) {
+      canvas.width = width;
+      canvas.height = height;
     }
     this.contexts[stream].drawImage(bitmap, 0, 0);
     if (stream === 0 && !this.drawnOnce) {
