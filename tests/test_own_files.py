@@ -43,11 +43,11 @@ def kept(store: AssetStore, tmp_path: Path, name: str, **arrays: Any) -> str:
 
 def test_a_terrain_of_ones_own_becomes_the_ground(store: AssetStore, tmp_path: Path) -> None:
     asset = kept(store, tmp_path, "hill.npz", elevation=HILL, cell_size=(80.0, 100.0))
-    heights = square(bake_arguments(UserTerrain(asset=asset)))
+    heights = square(bake_arguments(UserTerrain(asset=asset)))[0]
     middle = len(heights) // 2
     assert heights[middle, middle] > heights.max() - 1, "its summit in the middle"
     assert heights.max() - heights[middle, 0] == pytest.approx(2 * 2048 / 80, rel=0.02), "a cone of 2 m a node"
-    moved = square(bake_arguments(UserTerrain(asset=asset, north=-1000.0)))
+    moved = square(bake_arguments(UserTerrain(asset=asset, north=-1000.0)))[0]
     assert moved.max() == moved[: middle // 2 + 8].max(), "the summit lies north of the square's centre"
 
 
@@ -68,7 +68,7 @@ def test_a_terrain_that_cannot_serve_names_the_field(
         square(bake_arguments(UserTerrain(asset=asset, **change)))
     assert refused.value.field == field
     if "holes" in words:
-        filled = square(bake_arguments(UserTerrain(asset=asset, reading=TerrainReading(holes="fill"))))
+        filled = square(bake_arguments(UserTerrain(asset=asset, reading=TerrainReading(holes="fill"))))[0]
         assert np.isfinite(filled).all()
 
 
@@ -102,4 +102,4 @@ def test_what_was_said_beside_a_file_comes_back_with_it(store: AssetStore, tmp_p
     assert stored["reading"] == {"holes": "fill"}
     assert "filled" in stored["preview"]["notes"]
     assert np.isfinite(square(bake_arguments(UserTerrain.model_validate(
-        {"asset": stored["asset"], "reading": stored["reading"]})))).all()
+        {"asset": stored["asset"], "reading": stored["reading"]})))[0]).all()

@@ -41,7 +41,8 @@ def baked(alpha: int = 0, cover: float = 0.0) -> dict[str, dict[str, np.ndarray]
     world = flat(alpha)
     suns = np.radians([-18.0, 0.0, 90.0])
     return {
-        "terrain": {"elevation": world.elevation, "cover": np.full_like(world.cover, cover)},
+        "terrain": {"elevation": world.elevation, "cover": np.full_like(world.cover, cover),
+                    "presence": np.full_like(world.cover, 255 * cover), "growth": np.ones_like(world.cover)},
         "pattern": {name: getattr(world, name) for name in ("colour", "normal", "anchor", "tile")},
         "sky": {
             "elevations": suns,

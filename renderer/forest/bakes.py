@@ -19,12 +19,14 @@ if TYPE_CHECKING:
 def ground_bake(state: ForestState) -> Bake:
     """Heights and forest cover over the square."""
     arguments = {"terrain": bake_arguments(state.terrain), "cover": bake_arguments(state.cover)}
-    return Bake("terrain", bake_ground, arguments, version=2, seconds=1)
+    # Only a canopy height model asks how tall the pattern's own trees are.
+    inputs = (pattern_bake(state),) if state.cover.local_heights else ()
+    return Bake("terrain", bake_ground, arguments, inputs, version=3, seconds=1)
 
 
 def pattern_bake(state: ForestState) -> Bake:
     """The texture-cell atlas."""
-    return Bake("pattern", bake_pattern, bake_arguments(state.canopy), version=2, seconds=12)
+    return Bake("pattern", bake_pattern, bake_arguments(state.canopy), version=4, seconds=12)
 
 
 def terrain_horizon_bake(terrain: Bake, sectors: int) -> Bake:

@@ -12,25 +12,30 @@ from scipy.ndimage import gaussian_filter
 from renderer.core.cache import AssetStore
 from renderer.core.errors import InputError
 from renderer.core.technique import Arrays
-from renderer.forest.world_scale import CELL, NODES, STAND_TOP
-from renderer.world.terrain import DEFAULT_CENTRE, TerrainReading, crop, default_terrain, load_terrain
+from renderer.forest.stand_maps import density_map, sunward, survey
+from renderer.forest.world_scale import CELL, NODES, PRESENCE_SIDE, STAND_TOP
+from renderer.world.maps import spread
+from renderer.world.terrain import DEFAULT_CENTRE, Terrain, TerrainReading, crop, default_terrain, load_terrain
 
 RIM = 3
 """Nodes along the square's edge that always bear forest."""
 
+EDGE = 3.0
+"""How much faster the trees' presence falls than the cover at the forest's edge: it thins out over a row of trees."""
 
-def square(arguments: dict[str, Any]) -> np.ndarray:
-    """Elevation (N, N) float32 [m] of the document's `terrain`, row 0 the northern edge.
+
+def square(arguments: dict[str, Any]) -> tuple[np.ndarray, Terrain]:
+    """Elevation (N, N) float32 [m] of the document's `terrain`, row 0 the northern edge, and the whole model.
 
     Raises:
         InputError: the user's file cannot serve, naming the document's field.
     """
     if arguments["kind"] == "built_in":
-        return crop(default_terrain(), DEFAULT_CENTRE, NODES * CELL, CELL).elevation
+        return crop(default_terrain(), DEFAULT_CENTRE, NODES * CELL, CELL).elevation, default_terrain()
     try:
         path = AssetStore().get(arguments["asset"].removeprefix("asset:")).path
         terrain = load_terrain(path, reading=TerrainReading.model_validate(arguments["reading"]))
-        return crop(terrain, (arguments["east"], arguments["north"]), NODES * CELL, CELL).elevation
+        return crop(terrain, (arguments["east"], arguments["north"]), NODES * CELL, CELL).elevation, terrain
     except InputError as failure:
         if failure.field in TerrainReading.model_fields:
             raise failure.at(f"terrain.reading.{failure.field}") from None
@@ -60,27 +65,71 @@ def cover_map(elevation: np.ndarray, base: float, rules: dict[str, Any]) -> np.n
     slope = np.hypot(north, east)
     steep = math.tan(math.radians(rules["steepest"]))
     cover = np.minimum(cover, np.clip(0.5 + (steep - slope) * 4, 0, 1))
-    cover = np.minimum(cover, np.clip(0.5 + (rules["tree_line"] - base - elevation) / 40, 0, 1))
-    # Beyond the square its edge continues for ever: let that be forest, not the streaks of a cut glade.
-    cover[:RIM] = cover[-RIM:] = cover[:, :RIM] = cover[:, -RIM:] = 1.0
-    return cover.astype(np.float32)
+    line = rules["tree_line"] + rules["tree_line_aspect"] * sunward(elevation)
+    cover = np.minimum(cover, np.clip(0.5 + (line - base - elevation) / rules["tree_line_width"], 0, 1))
+    return _rimmed(cover, RIM).astype(np.float32)
+
+
+def _rimmed(cover: np.ndarray, rim: int) -> np.ndarray:
+    """Beyond the square its edge continues for ever: let that be forest, not the streaks of a cut glade."""
+    cover[:rim] = cover[-rim:] = cover[:, :rim] = cover[:, -rim:] = 1.0
+    return cover
+
+
+def presence_map(cover: np.ndarray, elevation: np.ndarray, base: float, rules: dict[str, Any]) -> np.ndarray:
+    """Share of the stand's trees that are there, (P, P) in [0, 1]: a tree stands where its rank is below it.
+
+    The forest is whole inside its edge and thins out over a row of trees; at the tree line, over its whole width.
+    """
+    share = np.clip(0.5 + EDGE * (cover - 0.5), 0, 1)
+    line = rules["tree_line"] + rules["tree_line_aspect"] * sunward(elevation)
+    share = np.minimum(share, np.clip(0.5 + (line - base - elevation) / rules["tree_line_width"], 0, 1))
+    return spread(share, PRESENCE_SIDE)
 
 
 def bake_ground(arguments: dict[str, Any], inputs: dict[str, Arrays], progress: Callable[[float, str], None]) -> Arrays:
     """Elevation above the square's lowest point, cover, and that point's own elevation.
 
     Args:
-        arguments: `terrain` and `cover`, as in the document.
+        arguments: `terrain` and `cover`, as in the document. inputs: `pattern`, where a canopy height model is given.
 
     Returns:
         `elevation` (N, N) float32 [m], `cover` (N, N) float32, `surface` (N, N) float32 [m] with the stands' tops,
-        `base` () float64 [m]; row 0 is the northern edge.
+        `presence` (P, P) uint8, the share of the pattern's trees that stand there, of 255; `growth` (N, N) float32,
+        their height against the pattern's; `base` () float64 [m]; row 0 is the northern edge.
     """
     progress(0.1, "reading the terrain")
-    terrain = square(arguments["terrain"])
+    terrain, land = square(arguments["terrain"])
     base = float(terrain.min())
     elevation = (terrain - base).astype(np.float32)
     progress(0.6, "laying out the forest")
-    cover = cover_map(elevation, base, arguments["cover"])
-    surface = elevation + np.float32(STAND_TOP) * (cover > 0.5)
-    return {"elevation": elevation, "cover": cover, "surface": surface, "base": np.array(base)}
+    rules = arguments["cover"]
+    cover = cover_map(elevation, base, rules)
+    presence = presence_map(cover, elevation, base, rules)
+    growth = np.ones(cover.shape, np.float32)
+    if rules["canopy_model"]:
+        progress(0.7, "reading the canopy heights")
+        found = survey(rules, arguments["terrain"], land, inputs["pattern"])
+        presence = np.where(np.isnan(found.share), presence, np.minimum(found.share, 1))
+        growth = np.where(found.known, found.growth, growth).astype(np.float32)
+        cover = _rimmed(np.where(found.known, _half(presence), cover), RIM).astype(np.float32)
+    if rules["density_map"]:
+        progress(0.8, "reading the density map")
+        presence = presence * density_map(rules)
+        cover = _rimmed(np.minimum(cover, _half(presence)), RIM).astype(np.float32)
+    surface = elevation + np.float32(STAND_TOP) * growth * (cover > 0.5)
+    return {
+        "elevation": elevation,
+        "cover": cover,
+        "surface": surface,
+        "presence": np.rint(255 * _rimmed(presence, RIM * PRESENCE_SIDE // NODES)).astype(np.uint8),
+        "growth": growth,
+        "base": np.array(base),
+    }
+
+
+def _half(presence: np.ndarray) -> np.ndarray:
+    """Cover (N, N) of a presence (P, P): the ground counts as wooded from a third of a closed stand on."""
+    rows = presence.reshape(NODES, presence.shape[0] // NODES, NODES, -1).mean(axis=(1, 3))
+    found: np.ndarray = np.clip(0.5 + 2 * (rows - 1 / 3), 0, 1)
+    return found

@@ -33,6 +33,9 @@ LAYERS = round(CANOPY_HEIGHT / VOXEL)
 AXES = lattice(VOXEL)
 """Sides of a voxel [m] along u and v; the third is VOXEL upwards."""
 
+WOOD = 128
+"""Mark of trunk and branch in the byte that holds a tree's rank."""
+
 OPAQUE = np.float32(1 - 2**-12)
 """Opacity at which extinction is cut off."""
 
@@ -72,6 +75,7 @@ class Atlas:
             found.attributes,
             corner,
             standing.foot,
+            standing.rank,
             AXES,
             standing.cells * CELL,
             self.mask,
@@ -117,7 +121,7 @@ def bake_pattern(
         `colour` uint8 [k, j, i, 4]: linear albedo times opacity, and the opacity over one voxel's length;
         `normal` uint8 [.., 4]: unit normal in world axes (0.5 n + 0.5), and the share of the sky's light;
         `anchor` uint8 [.., 4]: offset east and north to the tree's foot, 128 + 16 a metre; safe distance in voxels
-        (Chebyshev distance to matter); 255 in wood; the same with `_1` to `_5` at coarser levels (opacity over the
+        (Chebyshev distance to matter); the tree's rank (`planting.ranked`), plus WOOD in wood; the same with `_1` to `_5` at coarser levels (opacity over the
         level's own voxel length); `tile` uint8 [is_down, variant, key, 2]: see `tiles`; `trees` float32 [n, 6]: foot
         x and y in the atlas [m, world axes], height and crown radius [m], number of the species, number of the mesh.
     """
@@ -154,7 +158,7 @@ def _level(atlas: Atlas, progress: Callable[[float, str], None]) -> dict[str, np
     length = np.linalg.norm(atlas.normal, axis=-1)
     sound = full & (length > 1e-6)
     normal[sound] = atlas.normal[sound] / length[sound][:, None]
-    atlas.anchor[..., 3] = np.where(atlas.sums[..., 3] > 0.5 * atlas.area, 255, 0) * full
+    atlas.anchor[..., 3] |= np.where(full & (atlas.sums[..., 3] > 0.5 * atlas.area), WOOD, 0).astype(np.uint8)
     extend(full, normal, atlas.anchor, AXES)
     progress(0.6, "measuring safe distances")
     atlas.anchor[..., 2] = safe_distance(full)

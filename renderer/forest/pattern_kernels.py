@@ -18,6 +18,7 @@ def lay(
     sums,
     corner,
     foot,
+    rank,
     axes,
     shifts,
     atlas_mask,
@@ -32,7 +33,7 @@ def lay(
     Args:
         mask, area, normal, sums: see `Voxels`, [.., k, j, i]. corner: (2,) voxel (i, j) of their corner, from that
         of the rhombus.
-        foot: (2,) [m] from the corner of the rhombus. axes: (2, 2) sides of a voxel [m] along i and j.
+        foot: (2,) [m] from the corner of the rhombus. rank: of the tree. axes: (2, 2) sides of a voxel [m] along i and j.
         shifts: (S, 2) voxel (i, j) of the rhombi. atlas_*: results; `atlas_most` is the largest area that one tree
         has in the voxel.
     """
@@ -57,6 +58,7 @@ def lay(
                         atlas_most[k, row, column] = area[k, j, i]
                         atlas_anchor[k, row, column, 0] = np.uint8(min(max(east, 0.0), 255.0))
                         atlas_anchor[k, row, column, 1] = np.uint8(min(max(north, 0.0), 255.0))
+                        atlas_anchor[k, row, column, 3] = np.uint8(rank)
 
 
 @njit(cache=True, nogil=True)
@@ -84,9 +86,9 @@ def extend(full, normal, anchor, axes):
 
 @njit(cache=True, nogil=True)
 def _borrow(full, normal, anchor, axes, k, j, i, radius):
-    """Take the normal and the foot of the matter within `radius` voxels of voxel (k, j, i): whether there is any."""
+    """Take normal, foot and rank of the matter within `radius` voxels of voxel (k, j, i): whether there is any."""
     layers, rows, columns = full.shape
-    nearest = 1000000
+    nearest, rank = 1000000, 0
     x, y, z, east, north = 0.0, 0.0, 0.0, 0.0, 0.0
     for dk in range(max(-radius, -k), min(radius, layers - 1 - k) + 1):
         for dj in range(-radius, radius + 1):
@@ -101,6 +103,7 @@ def _borrow(full, normal, anchor, axes, k, j, i, radius):
                 z += normal[k + dk, row, column, 2] / squared
                 if squared < nearest:
                     nearest = squared
+                    rank = anchor[k + dk, row, column, 3] & 127
                     east = (di * axes[0, 0] + dj * axes[1, 0]) * ANCHOR_STEPS + anchor[k + dk, row, column, 0]
                     north = (di * axes[0, 1] + dj * axes[1, 1]) * ANCHOR_STEPS + anchor[k + dk, row, column, 1]
     if nearest == 1000000:
@@ -109,6 +112,7 @@ def _borrow(full, normal, anchor, axes, k, j, i, radius):
     normal[k, j, i, 0], normal[k, j, i, 1], normal[k, j, i, 2] = x / length, y / length, z / length
     anchor[k, j, i, 0] = np.uint8(min(max(np.round(east), 0.0), 255.0))
     anchor[k, j, i, 1] = np.uint8(min(max(np.round(north), 0.0), 255.0))
+    anchor[k, j, i, 3] = np.uint8(rank)
     return True
 
 

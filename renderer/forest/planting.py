@@ -11,7 +11,7 @@ Source: Neyret & Cani 1999; Cohen 2004, section 2.2 (rules); Cook 1986 (Poisson 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -29,6 +29,9 @@ crowded, and young ones; the later find the gaps that the earlier left."""
 
 SPACING = 0.88
 """Distance of two stems against the sum of their crown radii: crowns of a closed canopy interlock."""
+
+RANKS = 128
+"""Steps in which a stand can be thinned."""
 
 CORNER_RADIUS = 6.0
 """Distance from the corner [m] up to which its own trees stand; the edges' trees begin beyond."""
@@ -58,6 +61,7 @@ class Standing:
         mesh's. azimuth: turn [rad]. foot: (2,) [m], from the corner of the rhombus.
         cells: (S, 2) rhombi (p, q) of the atlas in which it stands.
         spread: crown radius [m]. reach: farthest of its vertices from the foot [m].
+        rank: 0 to RANKS - 1, in which the stand is thinned from above: see `ranked`.
     """
 
     tree: int
@@ -68,6 +72,7 @@ class Standing:
     cells: np.ndarray
     spread: float
     reach: float
+    rank: int = 0
 
 
 def plant(
@@ -104,7 +109,30 @@ def plant(
             for direction, worn in enumerate(triple(cell[0], cell[1], down)):
                 around += _moved(strips[direction, int(worn)], steps[direction : direction + 1])
             planted += darts.throw(cell[None], around, corners, _inside_rule(corners))
-    return planted
+    return ranked(planted, base)
+
+
+def ranked(planted: list[Standing], base: np.ndarray) -> list[Standing]:
+    """The trees with the ranks in which a thinner stand keeps them: any first share of them stands evenly.
+
+    Each rank goes to the tree that is farthest from those ranked before, over every rhombus where either stands, round
+    the torus of the atlas: a progressive sequence, as Eldar et al. 1997 ("The farthest point strategy") sample pictures.
+    """
+    places = np.concatenate([tree.foot + tree.cells @ base for tree in planted])
+    owner = np.repeat(np.arange(len(planted)), [len(tree.cells) for tree in planted])
+    away, to_cell = np.full(len(places), np.inf), np.linalg.inv(base)
+    result, chosen = np.zeros(len(planted), int), 0
+    for number in range(len(planted)):
+        result[chosen] = number * RANKS // len(planted)
+        for place in places[owner == chosen]:
+            apart = (places - place) @ to_cell
+            apart = (apart - RHOMBI * np.round(apart / RHOMBI)) @ base
+            away = np.minimum(away, np.hypot(*apart.T))
+        away[owner == chosen] = -1.0
+        nearest = np.full(len(planted), np.inf)
+        np.minimum.at(nearest, owner, away)
+        chosen = int(np.argmax(nearest))
+    return [replace(tree, rank=int(rank)) for tree, rank in zip(planted, result, strict=True)]
 
 
 def _moved(trees: list[Standing], places: np.ndarray) -> list[tuple[np.ndarray, float]]:

@@ -28,7 +28,8 @@ MARCH_STEPS = 1024
 
 WORLD_DECLARATIONS = """uniform sampler2D heights;        // coefficients of each cell, as shares of terrain_range
 uniform sampler2D normals;         // of the ground, and its cover
-uniform sampler2D cover;
+uniform sampler2D cover;           // share of the trees that stand, and metres to the next
+uniform sampler2D growth;          // height of the stands against the pattern's
 uniform sampler3D pattern_voxels;
 uniform sampler3D pattern_normal;
 uniform sampler2D tiles;
@@ -44,6 +45,8 @@ uniform float tile_side;          // m
 uniform float voxel_size;         // m
 uniform float canopy_height;      // m
 uniform float canopy_top;         // m, no tree is taller
+uniform float canopy_least;       // height of the lowest stand against the pattern's
+uniform float canopy_grade;       // greatest rise over run of the canopy's layer
 uniform float scene_top;          // m, nothing stands higher
 uniform float scene_reach;        // m, nothing farther is drawn
 uniform float scene_fade;         // m, over which the land beyond the square fades out
@@ -120,7 +123,8 @@ Chosen = tuple[tuple[str, type["ForestTechnique"], tuple[tuple[str, str], ...]],
 def trace_source(state: ForestState) -> Source:
     """The fragment stage that finds where each ray looks at the light, and what stands there; no sun is in it."""
     body = TRACE_BODY % SCOUT_BLOCKS[-1]
-    return _composed(_chosen(state, TRACE_SLOTS), ("forest/crossing.glsl",), ("forest/trace.glsl",), body, True)
+    files = ("forest/crossing.glsl",), ("forest/trace.glsl",)
+    return _composed(_chosen(state, TRACE_SLOTS), *files, body, True, state.cover.local_heights)
 
 
 def shade_source(state: ForestState) -> Source:
@@ -128,7 +132,8 @@ def shade_source(state: ForestState) -> Source:
     slots = tuple(slot for slot in state.techniques() if slot != "geometry")
     body = SHADE_BODY
     sky = state.view.background == "sky"
-    return _composed(_chosen(state, slots), (), ("forest/fading.glsl", "forest/shade.glsl"), body, sky)
+    after = ("forest/fading.glsl", "forest/shade.glsl")
+    return _composed(_chosen(state, slots), (), after, body, sky, state.cover.local_heights)
 
 
 def _chosen(state: ForestState, slots: tuple[str, ...]) -> Chosen:
@@ -138,12 +143,14 @@ def _chosen(state: ForestState, slots: tuple[str, ...]) -> Chosen:
 
 
 @functools.lru_cache(maxsize=256)
-def _composed(chosen: Chosen, before: tuple[str, ...], after: tuple[str, ...], body: str, sky: bool) -> Source:
+def _composed(
+    chosen: Chosen, before: tuple[str, ...], after: tuple[str, ...], body: str, sky: bool, local: bool
+) -> Source:
     files = ["lib/pixel.glsl", "lib/camera.glsl", "lib/sky.glsl", "forest/world.glsl", "forest/events.glsl", *before]
     files += [glsl_file("forest", slot, technique.model_fields["kind"].default) for slot, technique, _ in chosen]
     files += after
     declarations = [CAMERA_DECLARATIONS, SKY_DECLARATIONS, WORLD_DECLARATIONS, uniform_declarations(Ground, "ground")]
-    macros = _limits() | {"BACKGROUND_SKY": int(sky)}
+    macros = _limits(local) | {"BACKGROUND_SKY": int(sky)}
     for slot, technique, build in chosen:
         declarations += [f"uniform {kind} {slot}_{name};" for name, kind in technique.textures.items()]
         declarations += [uniform_declarations(technique, slot), *technique.extra_declarations]
@@ -152,10 +159,10 @@ def _composed(chosen: Chosen, before: tuple[str, ...], after: tuple[str, ...], b
 
 
 @functools.lru_cache(maxsize=64)
-def pass_source(slot: str, name: str, glsl: str, declarations: tuple[str, ...]) -> Source:
-    """The fragment stage of a pass drawn from the sun, `glsl`, with the uniforms it declares."""
+def pass_source(slot: str, name: str, glsl: str, declarations: tuple[str, ...], local: bool = False) -> Source:
+    """The fragment stage of a pass drawn from the sun, `glsl`, with the uniforms it declares; `local` as `_limits`."""
     text = "\n".join([WORLD_DECLARATIONS, uniform_declarations(Ground, "ground"), *declarations])
-    return assemble([glsl], defines=_limits(), declarations=text, body=PASS_BODY % (slot, name))
+    return assemble([glsl], defines=_limits(local), declarations=text, body=PASS_BODY % (slot, name))
 
 
 @functools.lru_cache(maxsize=len(SCOUT_BLOCKS))
@@ -168,8 +175,10 @@ def scout_source(number: int) -> Source:
     return assemble(files, defines=_limits(), declarations=text, body=SCOUT_BODY % (start, side))
 
 
-def _limits() -> dict[str, str | int]:
+def _limits(local: bool = False) -> dict[str, str | int]:
+    """Macros of every program; `local` where trees are taller at one place than at another."""
     return {
+        "LOCAL_CANOPY": int(local),
         "ENTRY_STEPS": ENTRY_STEPS,
         "MARCH_STEPS": MARCH_STEPS,
         "TILE_MAP": f"{TILE_MAP}.0",

@@ -100,7 +100,8 @@ class ForestRenderer:
             elevation = ground.arrays["elevation"]
             self._bounds[ground.key, pattern.key] = {
                 "terrain_range": bilinear_cells(elevation)[1],
-                **bounds(elevation, tallest(pattern.arrays["colour"])),
+                **bounds(elevation, tallest(pattern.arrays["colour"]) * float(ground.arrays["growth"].max())),
+                **stretch(ground.arrays["growth"]),
             }
         now = sky_for(baked["sky"].arrays, angles(state.sun)[1])
         sun = direction(state.sun)
@@ -171,7 +172,7 @@ class ForestRenderer:
             made = self._moment.get(
                 key,
                 lambda p=sun_pass, s=slot, t=sampled: {  # type: ignore[misc]
-                    "target": self._draw_pass(s, p, values, t)
+                    "target": self._draw_pass(s, p, values, t, state.cover.local_heights)
                 },
             )
             target = made["target"]
@@ -235,9 +236,11 @@ class ForestRenderer:
         run_fullscreen(self._gl, source, textures, values)
         return target
 
-    def _draw_pass(self, slot: str, sun_pass: Any, values: dict[str, Any], textures: dict[str, AnyTexture]) -> Target:
+    def _draw_pass(
+        self, slot: str, sun_pass: Any, values: dict[str, Any], textures: dict[str, AnyTexture], local: bool
+    ) -> Target:
         target = Target(self._gl, sun_pass.resolution, sun_pass.resolution, components=1)
-        source = pass_source(slot, sun_pass.name, sun_pass.glsl, sun_pass.declarations)
+        source = pass_source(slot, sun_pass.name, sun_pass.glsl, sun_pass.declarations, local)
         return self._draw_into(target, source, values | dict(sun_pass.uniforms), textures)
 
     @staticmethod
@@ -262,6 +265,12 @@ def bounds(elevation: np.ndarray, tree: float) -> dict[str, float]:
         "canopy_top": tree,
         "scene_top": float(elevation.max()) + tree,
     }
+
+
+def stretch(growth: np.ndarray) -> dict[str, float]:
+    """How low the canopy's layer gets against the pattern's, and its greatest rise over run."""
+    steps = [np.abs(np.diff(growth, axis=axis)).max() * CANOPY_HEIGHT / CELL for axis in (0, 1)]
+    return {"canopy_least": float(growth.min()), "canopy_grade": float(np.hypot(*steps))}
 
 
 def tallest(colour: np.ndarray) -> float:

@@ -86,7 +86,66 @@ class Cover(Model):
     tree_line: float = param(
         9000.0, label="Tree line", help="No trees above this elevation.", unit="m", cost="bake", ge=-500, le=9000
     )
+    tree_line_width: float = param(
+        60.0,
+        label="Width of the tree line",
+        help="Difference in elevation over which the forest thins out.",
+        unit="m",
+        cost="bake",
+        ge=1,
+        le=1000,
+    )
+    tree_line_aspect: float = param(
+        0.0,
+        label="Tree line on southern slopes",
+        help="How much higher the tree line runs on slopes that face south; below 0 for the southern hemisphere.",
+        unit="m",
+        cost="bake",
+        ge=-500,
+        le=500,
+    )
     seed: int = param(7, label="Seed", help="Of the glades' shapes.", cost="bake", ge=0, le=2**31 - 1)
+    density_map: str = param(
+        "",
+        label="Density map",
+        help="An uploaded picture, as asset:HASH, stretched over the square: black bears no trees, white the whole stand.",
+        cost="bake",
+        pattern=r"^(asset:[0-9a-f]{64})?$",
+    )
+    density_full: float = param(
+        0.0,
+        label="Value of a closed forest",
+        help="What the density map has for it, as 100 for per cent; 0 takes the largest value of the file's type.",
+        cost="bake",
+        ge=0,
+        le=1e6,
+    )
+    canopy_model: str = param(
+        "",
+        label="Canopy height model",
+        help="An uploaded raster of the canopy's height over the ground, as asset:HASH. Where it reaches, the forest "
+        "grows where it says, as tall as it says.",
+        cost="bake",
+        pattern=r"^(asset:[0-9a-f]{64})?$",
+    )
+    canopy_reading: TerrainReading = param(
+        TerrainReading(), label="Reading of the canopy heights", help="What its file leaves unsaid.", cost="bake"
+    )
+    lowest_tree: float = param(
+        2.0,
+        label="Lowest tree",
+        help="Height above which the canopy height model counts as forest.",
+        unit="m",
+        cost="bake",
+        ge=0.5,
+        le=20,
+    )
+
+
+    @property
+    def local_heights(self) -> bool:
+        """Whether trees are taller at one place than at another."""
+        return bool(self.canopy_model)
 
 
 class Canopy(Model):

@@ -8,14 +8,14 @@ from scipy.ndimage import distance_transform_edt
 
 from renderer.core.technique import Arrays
 from renderer.forest.tiles import cell_hash, tile_table
-from renderer.forest.world_scale import CELL
+from renderer.forest.world_scale import CELL, PRESENCE_CELL
 from renderer.gl.context import GL
 from renderer.gl.program import AnyTexture
 from renderer.gl.textures import Wrap
 from renderer.world.terrain import normals
 
-COVER_FINER = 2
-"""How many times finer the yes-or-no map of trees is than the terrain grid: 4 m, less than a crown."""
+FILTERED = 6.0
+"""Metres by which the distance to the next stand is shortened: a texel's diagonal, over which it is filtered."""
 
 HALF = 32768 / 65535
 """What 16 bits hold for no rise: exactly, so that flat ground is flat."""
@@ -43,29 +43,25 @@ def bilinear_cells(elevation: np.ndarray) -> tuple[np.ndarray, tuple[float, floa
     return np.rint(shares * 65535).astype(np.uint16), (relief, rise)
 
 
-def fine_cover(cover: np.ndarray) -> np.ndarray:
-    """Where trees may stand (0 or 255) and how far the next such place is [m], (.., .., 2) uint8, row 0 at the south.
+def stand_texture(presence: np.ndarray) -> np.ndarray:
+    """Share of the trees that stand (0 to 255) and how far the next one may be [m], (P, P, 2) uint8, row 0 at the south.
 
-    `COVER_FINER` times finer than the grid; trees stand where bilinear cover exceeds one half.
+    Filtered between its texels, as the truth is.
     """
-    nodes = cover.shape[0]
-    place = (np.arange(nodes * COVER_FINER) + 0.5) / COVER_FINER - 0.5
-    low = np.clip(np.floor(place).astype(int), 0, nodes - 2)
-    weight = np.clip(place - low, 0, 1).astype(np.float32)
-    rows = cover[low] * (1 - weight)[:, None] + cover[low + 1] * weight[:, None]
-    both = rows[:, low] * (1 - weight) + rows[:, low + 1] * weight
-    wooded = both[::-1] > 0.5
-    away = distance_transform_edt(~wooded) * (CELL / COVER_FINER) if wooded.any() else np.full(wooded.shape, 255.0)
-    return np.stack([wooded * np.uint8(255), np.minimum(away, 255)], axis=-1).astype(np.uint8)
+    share = presence[::-1]
+    some = share > 0
+    away = distance_transform_edt(~some) * PRESENCE_CELL - FILTERED if some.any() else np.full(some.shape, 255.0)
+    return np.stack([share, np.clip(away, 0, 255)], axis=-1).astype(np.uint8)
 
 
 def ground_textures(gl: GL, ground: Arrays) -> dict[str, AnyTexture]:
-    """`heights`, `normals` (with the smooth cover) and `cover` from the `terrain` bake."""
+    """`heights`, `normals` (with the smooth cover), `cover` and `growth` from the `terrain` bake."""
     slope = normals(ground["elevation"], (CELL, CELL))[::-1]
     return {
         "heights": gl.texture2d(bilinear_cells(ground["elevation"])[0], filter="nearest"),
         "normals": gl.texture2d(np.concatenate([slope, ground["cover"][::-1, :, None]], axis=-1).astype(np.float16)),
-        "cover": gl.texture2d(fine_cover(ground["cover"]), filter="nearest"),
+        "cover": gl.texture2d(stand_texture(ground["presence"])),
+        "growth": gl.texture2d(np.ascontiguousarray(ground["growth"][::-1]), filter="linear"),
     }
 
 

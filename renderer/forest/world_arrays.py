@@ -27,7 +27,7 @@ def world_arrays(state: ForestState, baked: Mapping[str, Arrays]) -> dict[str, A
         baked: arrays of `NEEDS`.
 
     Returns:
-        By name: the arrays of the ground (`elevation`, `cover`), of the pattern (`colour`, `normal`, `anchor`, `tile`),
+        By name: the arrays of the ground (`elevation`, `cover`, `presence`, `growth`), of the pattern (`colour`, `normal`, `anchor`, `tile`),
         and the numbers that scale, seed and light them, as the reference's world names them; `background`, the radiance
         of the sky for unit directions (M, 3), W m-2 sr-1.
     """
@@ -41,6 +41,8 @@ def world_arrays(state: ForestState, baked: Mapping[str, Arrays]) -> dict[str, A
     return {
         "elevation": ground["elevation"],
         "cover": ground["cover"],
+        "presence": ground["presence"] / 255.0,
+        "growth": ground["growth"],
         "cell": CELL,
         "canopy_height": CANOPY_HEIGHT,
         "tile_side": TILE_SIDE,

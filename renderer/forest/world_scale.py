@@ -17,6 +17,12 @@ TILE_SIDE = 40.0
 VOXEL = 0.625
 """Side of a voxel of the pattern [m]."""
 
+PRESENCE_CELL = 4.0
+"""Metres between two places of the map of trees: less than a crown."""
+
+PRESENCE_SIDE = round(NODES * CELL / PRESENCE_CELL)
+"""Places a side of the map of trees, in the middle of its cells."""
+
 REACH = 30000.0
 """Distance [m] beyond which nothing of the forest is drawn."""
 

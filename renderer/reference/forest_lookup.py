@@ -10,7 +10,7 @@ import math
 
 from numba import njit
 
-from renderer.reference.forest_world import ANCHOR_STEPS, EVERYWHERE, NOWHERE, TILES, Scene
+from renderer.reference.forest_world import ANCHOR_STEPS, EVERYWHERE, NOWHERE, RANKS, TILES, Scene
 
 MASK = 0xFFFFFFFF
 ALPHA_MAX = 1.0 - 2.0**-12
@@ -143,13 +143,16 @@ def foot(scene: Scene, x: float, y: float, tu: float, tv: float, tk: float, cent
 
 @njit(cache=True, nogil=True)
 def stands(scene: Scene, presence: int, x: float, y: float, tu: float, tv: float, tk: float) -> bool:
-    """Whether the tree that owns a sample exists: its foot is covered."""
+    """Whether the tree that owns a sample exists: the share that stands at its foot exceeds its rank."""
     if presence == EVERYWHERE:
         return True
     if presence == NOWHERE:
         return False
     foot_x, foot_y = foot(scene, x, y, tu, tv, tk, False)
-    return bilinear(scene.cover, scene.cell, foot_x, foot_y) > 0.5
+    size, layers = scene.anchor.shape[2], scene.anchor.shape[0]
+    k = min(max(math.floor(tk + 0.5), 0), layers - 1)
+    rank = scene.anchor[k, math.floor(tv + 0.5) % size, math.floor(tu + 0.5) % size, 3] % RANKS
+    return bilinear(scene.share, scene.share_cell, foot_x, foot_y) > rank / RANKS
 
 
 @njit(cache=True, nogil=True)

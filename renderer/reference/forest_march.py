@@ -58,17 +58,25 @@ def _exit(start: float, step: float, low: float, high: float) -> float:
 
 
 @njit(cache=True, nogil=True)
-def _interval(scene, o, d, s, end, curve, tau, limit, step, mode, own, presence, record, n):
-    """March one part within the canopy; `curve` = (s0, q0, q1, q2): height above ground at s is q0 + q1 t + q2 t^2.
+def _interval(scene, o, d, s, end, curve, layer, tau, limit, step, mode, own, presence, record, n):
+    """March one part within the canopy.
+
+    Args:
+        curve: (s0, q0, q1, q2): the height above ground at s is q0 + q1 t + q2 t^2, t = s - s0, m.
+        layer: (g0, g1, g2, least): the canopy's height there, likewise, and the least over the cell, m.
 
     Returns (status, s, tau, n); status LEFT when the part was crossed.
     """
     s0, q0, q1, q2 = curve
+    g0, g1, g2, least = layer
     layers, size = scene.colour.shape[0], scene.colour.shape[2]
     per = size / TILES
     u0, v0 = lattice(scene, o[0], o[1])
     du, dv = lattice(scene, d[0], d[1])
-    steepest = max(abs(q1 + 2 * q2 * (s - s0)), abs(q1 + 2 * q2 * (end - s0))) / scene.height * layers
+    # h = q / g with h in [0, 1]: |h'| <= (|q'| + |g'|) / g
+    steepest = max(abs(q1 + 2 * q2 * (s - s0)), abs(q1 + 2 * q2 * (end - s0)))
+    steepest += max(abs(g1 + 2 * g2 * (s - s0)), abs(g1 + 2 * g2 * (end - s0)))
+    steepest *= layers / least
     rate = max(abs(du) * per, abs(dv) * per, steepest, 1e-12)
     while s < end:
         ahead = min(s + NUDGE, end)
@@ -83,7 +91,7 @@ def _interval(scene, o, d, s, end, curve, tau, limit, step, mode, own, presence,
         base_u, base_v = (p - i + u0) * per - 0.5, (q - j + v0) * per - 0.5
         while s < stop:
             t = s - s0
-            tk = (q0 + (q1 + q2 * t) * t) / scene.height * layers - 0.5
+            tk = (q0 + (q1 + q2 * t) * t) / (g0 + (g1 + g2 * t) * t) * layers - 0.5
             tu, tv = base_u + du * per * s, base_v + dv * per * s
             k = min(max(math.floor(tk), -1), layers - 1)
             clear = scene.safe[k + 1, math.floor(tv) % size, math.floor(tu) % size]
@@ -95,7 +103,7 @@ def _interval(scene, o, d, s, end, curve, tau, limit, step, mode, own, presence,
             length = min(step, stop - s)
             middle = s + 0.5 * length
             t = middle - s0
-            tk = (q0 + (q1 + q2 * t) * t) / scene.height * layers - 0.5
+            tk = (q0 + (q1 + q2 * t) * t) / (g0 + (g1 + g2 * t) * t) * layers - 0.5
             tu, tv = base_u + du * per * middle, base_v + dv * per * middle
             alpha = alpha_at(scene, tu, tv, tk)
             if alpha > 0.0 and _meets(scene, o, d, middle, tu, tv, tk, mode, own, presence):
@@ -126,6 +134,22 @@ def _meets(scene, o, d, s, tu, tv, tk, mode, own, presence):
     return same == (mode == ONLY_OWN)
 
 
+@njit(cache=True, nogil=True, inline="always")
+def _along(nw, ne, sw, se, px, py, dx, dy):
+    """Coefficients of 1, t, t^2 of a bilinear cell's value along (px + dx t, py + dy t), from its north-west corner."""
+    a, b = ne - nw, sw - nw
+    k = se - sw - a
+    return nw + a * px + b * py + k * px * py, a * dx + b * dy + k * (px * dy + py * dx), k * dx * dy
+
+
+@njit(cache=True, nogil=True, inline="always")
+def _along(nw, ne, sw, se, px, py, dx, dy):
+    """Coefficients of 1, t, t^2 of a bilinear cell's value along (px + dx t, py + dy t), from its north-west corner."""
+    a, b = ne - nw, sw - nw
+    k = se - sw - a
+    return nw + a * px + b * py + k * px * py, a * dx + b * dy + k * (px * dy + py * dx), k * dx * dy
+
+
 @njit(cache=True, nogil=True)
 def _cell(scene, o, d, s, end, i, j, tau, limit, step, solid, mode, own, record, n):
     """March the part of a ray over terrain cell (row i, column j). Returns (status, s, tau, n)."""
@@ -133,18 +157,19 @@ def _cell(scene, o, d, s, end, i, j, tau, limit, step, solid, mode, own, record,
     z = scene.elevation
     r0, r1 = min(max(i, 0), last), min(max(i + 1, 0), last)
     c0, c1 = min(max(j, 0), last), min(max(j + 1, 0), last)
-    h, a, b = z[r0, c0], z[r0, c1] - z[r0, c0], z[r1, c0] - z[r0, c0]
-    k = z[r1, c1] - z[r1, c0] - a
     dx, dy = d[0] / scene.cell, -d[1] / scene.cell
     px = o[0] / scene.cell + 0.5 * last + dx * s - j
     py = 0.5 * last - o[1] / scene.cell + dy * s - i
-    q0 = o[2] + d[2] * s - (h + a * px + b * py + k * px * py)
-    q1 = d[2] - (a * dx + b * dy + k * (px * dy + py * dx))
-    q2 = -k * dx * dy
+    f0, f1, f2 = _along(z[r0, c0], z[r0, c1], z[r1, c0], z[r1, c1], px, py, dx, dy)
+    q0, q1, q2 = o[2] + d[2] * s - f0, d[2] - f1, -f2
+    g = scene.growth
+    g0, g1, g2 = _along(g[r0, c0], g[r0, c1], g[r1, c0], g[r1, c1], px, py, dx, dy)
+    least = min(g[r0, c0], g[r0, c1], g[r1, c0], g[r1, c1])
+    layer = (scene.height * g0, scene.height * g1, scene.height * g2, scene.height * least)
     start, span = s, end - s
     t = 0.0
     presence = scene.presence[min(max(i, 0), last - 1), min(max(j, 0), last - 1)]
-    enter, leave = _roots(q2, q1, q0 - scene.height)
+    enter, leave = _roots(q2 - layer[2], q1 - layer[1], q0 - layer[0])
     hit, out = _roots(q2, q1, q0)
     while t < span:
         # the next border of the layer behind t closes a part that is wholly above, within or below it
@@ -157,10 +182,10 @@ def _cell(scene, o, d, s, end, i, j, tau, limit, step, solid, mode, own, record,
         if height < 0.0:
             if solid:
                 return GROUND, start + t, tau, n
-        elif height < scene.height and mode != NONE and presence != NOWHERE:
+        elif height < layer[0] + (layer[1] + layer[2] * middle) * middle and mode != NONE and presence != NOWHERE:
             curve = (start, q0, q1, q2)
             status, s, tau, n = _interval(
-                scene, o, d, start + t, start + nearest, curve, tau, limit, step, mode, own, presence, record, n
+                scene, o, d, start + t, start + nearest, curve, layer, tau, limit, step, mode, own, presence, record, n
             )
             if status != LEFT:
                 return status, s, tau, n
@@ -187,7 +212,7 @@ def march(scene, o, d, s, tau, limit, step, solid, mode, own, record):
     """
     last = scene.elevation.shape[0] - 1
     blocks = scene.block_top.shape[0]
-    ceiling = scene.top + scene.height
+    ceiling = scene.top + scene.layer_top
     dx, dy = d[0] / scene.cell, -d[1] / scene.cell
     x0, y0 = o[0] / scene.cell + 0.5 * last, 0.5 * last - o[1] / scene.cell
     if d[2] < 0.0 and o[2] + d[2] * s > ceiling:
@@ -199,7 +224,7 @@ def march(scene, o, d, s, tau, limit, step, solid, mode, own, record):
         end = min(_exit(x0, dx, column * BLOCK, (column + 1) * BLOCK), _exit(y0, dy, row * BLOCK, (row + 1) * BLOCK))
         end = min(max(end, s + NUDGE), scene.reach)
         low = o[2] + d[2] * (end if d[2] < 0.0 else s)
-        if low > scene.block_top[min(max(row, 0), blocks - 1), min(max(column, 0), blocks - 1)] + scene.height:
+        if low > scene.block_top[min(max(row, 0), blocks - 1), min(max(column, 0), blocks - 1)] + scene.layer_top:
             s = end
             continue
         j, i = math.floor(x), math.floor(y)

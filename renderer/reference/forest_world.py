@@ -27,6 +27,9 @@ TILES = 4
 ANCHOR_STEPS = 16.0
 """Steps of a stored anchor offset per metre, from 128 = no offset."""
 
+RANKS = 128
+"""Steps in which a stand is thinned: the lowest seven bits of an anchor's last byte are its tree's rank."""
+
 REACH = 127 / ANCHOR_STEPS
 """Longest stored offset from a voxel to its tree's foot along one axis, m."""
 
@@ -38,7 +41,11 @@ class ForestWorld:
     Attributes:
         elevation: (N, N) ground height at the nodes, row 0 = northern edge, the square centred on the origin; bilinear
             between nodes, continued by its edge's value.
-        cover: (N, N) cover on the same nodes, 0..1: a tree stands where it exceeds 0.5 at the tree's foot.
+        cover: (N, N) cover on the same nodes, 0..1: the ground is wooded where it exceeds 0.5.
+        presence: (P, P) share of the trees that stand, 0..1, at the middles of P x P equal parts of the nodes' square
+            (side N cells), bilinear between them: a tree stands where it exceeds the tree's rank over RANKS at its foot;
+            `cover` where it is left out.
+        growth: (N, N) height of the layer against `canopy_height` on the nodes, bilinear; 1 where it is left out.
         cell: distance between nodes, m.
         canopy_height, tile_side, voxel: height of the layer, side of the tiling's triangles, length for which alpha is
             meant, m.
@@ -80,6 +87,8 @@ class ForestWorld:
     fade: float = math.inf
     background: Callable[[Floats], Floats] | None = None
     patches: float = 0.0
+    presence: NDArray[np.floating] | None = None
+    growth: NDArray[np.floating] | None = None
 
     def __post_init__(self) -> None:
         """Refuse arrays that do not fit together.
@@ -92,6 +101,10 @@ class ForestWorld:
             raise InputError("elevation", f"has shape {shape}", "a square of at least 2 x 2 nodes")
         if self.cover.shape != shape:
             raise InputError("cover", f"has shape {self.cover.shape}", f"{shape} as the elevation")
+        if self.presence is not None and (self.presence.ndim != 2 or len(set(self.presence.shape)) > 1):
+            raise InputError("presence", f"has shape {self.presence.shape}", "a square")
+        if self.growth is not None and (self.growth.shape != shape or not self.growth.min() > 0):
+            raise InputError("growth", f"has shape {self.growth.shape}", f"{shape} as the elevation, above 0")
         atlas = self.colour.shape
         if len(atlas) != 4 or atlas[3] != 4 or atlas[1] != atlas[2] or atlas[2] % TILES:
             raise InputError("colour", f"has shape {atlas}", f"(K, M, M, 4), M a multiple of {TILES}")
@@ -118,9 +131,13 @@ class Scene(NamedTuple):
     slope_x: Floats
     slope_y: Floats
     cover: Floats
+    share: Floats
+    share_cell: float
+    growth: Floats
     presence: Bytes
     block_top: Floats
     top: float
+    layer_top: float
     cell: float
     height: float
     side: float
@@ -149,11 +166,15 @@ def prepare(world: ForestWorld) -> Scene:
     """Derive bounds, slopes and distances from a world."""
     z = np.ascontiguousarray(world.elevation, np.float64)
     cover = np.ascontiguousarray(world.cover, np.float64)
+    share = cover if world.presence is None else np.ascontiguousarray(world.presence, np.float64)
+    share_cell = float(world.cell * len(z) / len(share))
+    growth = np.ones_like(z) if world.growth is None else np.ascontiguousarray(world.growth, np.float64)
     # one-sided differences at the edges, central ones elsewhere; rows run south
     slope_y, slope_x = (np.ascontiguousarray(g) for g in np.gradient(z, world.cell))
     return Scene(
-        elevation=z, slope_x=slope_x, slope_y=-slope_y, cover=cover, presence=_presence(cover, world.cell),
-        block_top=_block_top(z), top=float(z.max()), cell=float(world.cell), height=float(world.canopy_height),
+        elevation=z, slope_x=slope_x, slope_y=-slope_y, cover=cover, share=share, share_cell=share_cell,
+        growth=growth, presence=_presence(share, share_cell, len(z) - 1, world.cell), block_top=_block_top(z),
+        top=float(z.max()), layer_top=float(world.canopy_height * growth.max()), cell=float(world.cell), height=float(world.canopy_height),
         side=float(world.tile_side), voxel=float(world.voxel), colour=np.ascontiguousarray(world.colour),
         normal=np.ascontiguousarray(world.normal), anchor=np.ascontiguousarray(world.anchor),
         safe=_safe(world.colour[..., 3]), tile=np.ascontiguousarray(world.tile, np.uint8), seed=int(world.seed),
@@ -174,18 +195,19 @@ def _block_top(z: Floats) -> Floats:
     return blocks
 
 
-def _presence(cover: Floats, cell: float) -> Bytes:
+def _presence(share: Floats, share_cell: float, cells: int, cell: float) -> Bytes:
     """For each cell, whether the trees that may reach into it all stand, none does, or each must be asked.
 
-    A voxel names a foot at most `REACH` away along either axis; the cover there lies between the extremes of the nodes
+    A voxel names a foot at most `REACH` away along either axis; the share there lies between the extremes of the places
     around it, because it is bilinear.
     """
-    reach = math.ceil(REACH / cell)
-    size = 2 * reach + 2
-    # the window of cell i spans nodes i - reach .. i + 1 + reach; scipy centres an even window at size // 2
-    low = ndimage.minimum_filter(cover, size, mode="nearest", origin=-1)[:-1, :-1]
-    high = ndimage.maximum_filter(cover, size, mode="nearest", origin=-1)[:-1, :-1]
-    return np.where(low > 0.5, EVERYWHERE, np.where(high <= 0.5, NOWHERE, SOMEWHERE)).astype(np.uint8)
+    size = 2 * math.ceil((REACH + 0.5 * cell) / share_cell + 0.5) + 1
+    low, high = (extreme(share, size, mode="nearest") for extreme in (ndimage.minimum_filter, ndimage.maximum_filter))
+    middle = (np.arange(cells) - 0.5 * (cells - 1)) * cell
+    # within half a place of the cell's middle, which the window's own half place allows for
+    at = np.clip(np.rint(middle / share_cell + 0.5 * (len(share) - 1)).astype(int), 0, len(share) - 1)
+    some = np.where(high[np.ix_(at, at)] <= 0.0, NOWHERE, SOMEWHERE)
+    return np.where(low[np.ix_(at, at)] > (RANKS - 1) / RANKS, EVERYWHERE, some).astype(np.uint8)
 
 
 def _safe(alpha: Bytes) -> Bytes:

@@ -51,17 +51,7 @@ def load_image(path: Path, limits: Limits = DEFAULT_LIMITS, colour: Colour = "sr
         AssetError: a file that is damaged, truncated, of another format, or holds NaN or infinite values.
         LimitError: one that is larger, or claims to be, than the limits allow.
     """
-    try:
-        size = path.stat().st_size
-        if size > limits.file_bytes:
-            raise LimitError("file", f"has {size:,} bytes", f"at most {limits.file_bytes:,} bytes")
-        data = path.read_bytes()
-    except OSError as failure:
-        raise AssetError("file", "cannot be read") from failure
-    kind = next((name for magic, name in MAGIC if data.startswith(magic)), None)
-    if kind is None:
-        raise AssetError("file", "is no picture of a known format", "PNG, JPEG, Radiance HDR, OpenEXR, .npy")
-    pixels = _READERS[kind](data, limits)
+    pixels = load_codes(path, limits)
     if pixels.dtype.kind != "f":
         pixels = pixels.astype(np.float64) / np.iinfo(pixels.dtype).max
         if colour == "srgb":
@@ -73,6 +63,25 @@ def load_image(path: Path, limits: Limits = DEFAULT_LIMITS, colour: Colour = "sr
     if not np.isfinite(result).all():
         raise AssetError("file", "holds values that are not finite numbers")
     return result
+
+
+def load_codes(path: Path, limits: Limits = DEFAULT_LIMITS) -> NDArray:
+    """A picture's numbers as its file holds them, (height, width, channels): codes of PNG and JPEG, values of the others.
+
+    Raises:
+        AssetError, LimitError: as `load_image`, but for values that are not finite.
+    """
+    try:
+        size = path.stat().st_size
+        if size > limits.file_bytes:
+            raise LimitError("file", f"has {size:,} bytes", f"at most {limits.file_bytes:,} bytes")
+        data = path.read_bytes()
+    except OSError as failure:
+        raise AssetError("file", "cannot be read") from failure
+    kind = next((name for magic, name in MAGIC if data.startswith(magic)), None)
+    if kind is None:
+        raise AssetError("file", "is no picture of a known format", "PNG, JPEG, Radiance HDR, OpenEXR, .npy")
+    return _READERS[kind](data, limits)
 
 
 def _decode_colours(pixels: NDArray) -> NDArray:

@@ -16,10 +16,11 @@ float step_above(float gap, vec3 direction, vec3 ground) {
 // A voxel's foot and another's are both within 8 m along each axis: nothing stands nearer than the next stand less that, and a texel.
 const float GLADE_REACH = 28.0;
 
-// Voxels that a ray crosses per metre, at most, along any axis of the sheared lattice.
+// Voxels that a ray crosses per metre, at most, along any axis of the sheared lattice; upwards, those of the lowest stand.
 float voxel_rate(vec3 direction) {
     float run = length(direction.xy);
-    return max(1.1547005383792515 * run, abs(direction.z) + terrain_steepness * run) / voxel_size;
+    float rise = (abs(direction.z) + (terrain_steepness + canopy_grade) * run) / canopy_least;
+    return max(1.1547005383792515 * run, rise) / voxel_size;
 }
 
 // Gap at which a ray counts as arrived, per metre of its length: a quarter of a pixel in a picture of 500 lines.

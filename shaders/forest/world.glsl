@@ -34,13 +34,18 @@ float wooded_at(vec2 xy) {
     return smoothstep(0.45, 0.55, textureLod(normals, terrain_coordinate(xy), 0.0).a);
 }
 
-// Where trees may stand, 0 or 1, and how far off the next such place is [m].
+// Share of the trees that stand at a place, and how far off the next one may be [m].
 vec2 cover_at(vec2 xy) {
     return textureLod(cover, terrain_coordinate(xy), 0.0).rg * vec2(1.0, 255.0);
 }
 
-float covered(vec2 xy) {
-    return cover_at(xy).x;
+// Height of the canopy's layer [m]: the pattern's own, stretched where the stand is taller or shorter than it.
+float layer_height(vec2 xy) {
+#if LOCAL_CANOPY == 1
+    return canopy_height * textureLod(growth, terrain_coordinate(xy), 0.0).r;
+#else
+    return canopy_height;
+#endif
 }
 
 // Formulas b1: a triangle's tile follows from the hashed colours of its three edges. `tiles` holds the outcome for the cells in reach,
@@ -90,6 +95,14 @@ float free_voxels(vec4 voxel) {
 // Foot of the tree that owns the voxel: offset in sixteenths of a metre.
 vec2 foot_of(vec2 xy, vec4 voxel) {
     return xy + (two_bytes(voxel.z) - 128.0) * 0.0625;
+}
+
+// Whether the tree that owns the voxel stands, 0 or 1, and how far off the next one may be [m]: its rank, of 128 in which the stand is
+// thinned, against the share that stands at its foot.
+vec2 stand_of(vec2 xy, vec4 voxel) {
+    vec2 found = cover_at(foot_of(xy, voxel));
+    float rank = mod(two_bytes(voxel.w).y, 128.0) / 128.0;
+    return vec2(found.x > rank ? 1.0 : 0.0, found.y);
 }
 
 // Slow variation of the trees' colour, from the foot of each tree.

@@ -73,6 +73,7 @@ def _asked(
     textures: Mapping[str, np.ndarray] | None = None,
     values: Mapping[str, Any] | None = None,
     declarations: str = "",
+    local: bool = False,
 ) -> np.ndarray:
     """Evaluate GLSL for N inputs among the world's samplers and uniforms.
 
@@ -82,6 +83,7 @@ def _asked(
         terrain, pattern: bakes; level ground and an empty pattern by default.
         state: for sun, ground and seed. techniques: by slot, whose live parameters are declared and set.
         textures: of those techniques, by their full names. values: more uniforms. declarations: of those.
+        local: whether trees are taller at one place than at another.
     """
     if not drawers:
         drawers.append(ForestRenderer(gl))
@@ -102,7 +104,7 @@ def _asked(
         given |= uniforms(technique, slot) | technique.constants()
     try:
         return probe(gl, ["forest/world.glsl", *files], body, inputs, outputs, uniforms=given | dict(values or {}),
-                     textures=held | made, declarations="\n".join([*text, declarations]), defines=program._limits())
+                     textures=held | made, declarations="\n".join([*text, declarations]), defines=program._limits(local))
     finally:
         for texture in made.values():
             texture.release()

@@ -6,10 +6,11 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+from scipy import ndimage
 
-from renderer.forest.textures import COVER_FINER, TILE_MAP, bilinear_cells, fine_cover, packed, tile_map
+from renderer.forest.textures import TILE_MAP, bilinear_cells, packed, stand_texture, tile_map
 from renderer.forest.tiles import locate
-from renderer.forest.world_scale import CELL, NODES, TILE_SIDE
+from renderer.forest.world_scale import CANOPY_HEIGHT, CELL, NODES, PRESENCE_CELL, PRESENCE_SIDE, TILE_SIDE
 from tests.forest import worlds
 
 Ask = Callable[..., np.ndarray]
@@ -17,12 +18,13 @@ RNG = np.random.default_rng(6)
 HALF = (NODES - 1) / 2 * CELL
 
 
-def bilinear(grid: np.ndarray, xy: np.ndarray) -> np.ndarray:
-    """Twin: a node grid (row 0 the northern edge) between its nodes, its edge continued, float64."""
-    column = np.clip(xy[:, 0] / CELL + (NODES - 1) / 2, 0, NODES - 1)
-    row = np.clip((NODES - 1) / 2 - xy[:, 1] / CELL, 0, NODES - 1)
-    j, i = (np.minimum(place.astype(int), NODES - 2) for place in (column, row))
-    u, v, z = column - j, row - i, grid.astype(np.float64)
+def between(grid: np.ndarray, cell: float, xy: np.ndarray) -> np.ndarray:
+    """Twin: a square grid of places (row 0 the northern edge) between them, its edge continued, float64."""
+    last, z = len(grid) - 1, grid.astype(np.float64)
+    column = np.clip(xy[:, 0] / cell + last / 2, 0, last)
+    row = np.clip(last / 2 - xy[:, 1] / cell, 0, last)
+    j, i = (np.minimum(place.astype(int), last - 1) for place in (column, row))
+    u, v = column - j, row - i
     return (z[i, j] * (1 - u) + z[i, j + 1] * u) * (1 - v) + (z[i + 1, j] * (1 - u) + z[i + 1, j + 1] * u) * v
 
 
@@ -36,7 +38,7 @@ def height_error(ask: Ask) -> float:
     xy = np.concatenate([RNG.uniform(-HALF - 50, HALF + 50, (2000, 2)), [[-HALF, HALF], [HALF, -HALF], [0, 0]]])
     xy = xy.astype(np.float32)
     found = ask([], "ground_height(xy)", {"xy": xy}, terrain=rough())[:, 0]
-    return float(np.abs(found - bilinear(rough()["elevation"], xy.astype(float))).max())
+    return float(np.abs(found - between(rough()["elevation"], CELL, xy.astype(float))).max())
 
 
 def test_heights_are_bilinear_and_continue_beyond_the_edge(ask: Ask) -> None:
@@ -87,36 +89,59 @@ def test_the_default_relief_keeps_a_centimetre() -> None:
     assert 2 * rise / 65535 < 0.001
 
 
-def cover_error(ask: Ask) -> float:
-    """Share of places where the map of trees differs from bilinear cover above one half."""
-    grid = np.clip(np.random.default_rng(2).normal(0.5, 0.3, (NODES, NODES)), 0, 1).astype(np.float32)
-    texel = (RNG.integers(0, NODES * COVER_FINER, (4000, 2)) + 0.5) * CELL / COVER_FINER - NODES * CELL / 2
-    exact = bilinear(grid, texel)
-    clear = np.abs(exact - 0.5) > 1e-3
-    found = ask([], "covered(xy)", {"xy": texel}, terrain=worlds.ground(cover=grid))[:, 0]
-    return float((found[clear] != (exact[clear] > 0.5)).mean())
+def stand_error(ask: Ask) -> float:
+    """Share of places where the shader's trees differ from those whose rank the bilinear share at their foot exceeds."""
+    share = RNG.integers(0, 256, (PRESENCE_SIDE, PRESENCE_SIDE)).astype(np.uint8)
+    share[::3] = 255
+    terrain = worlds.ground() | {"presence": share}
+    xy = RNG.uniform(-2000, 2000, (4000, 2)).astype(np.float32)
+    rank, wood = RNG.integers(0, 128, 4000), RNG.integers(0, 2, 4000)
+    voxel = np.stack([0 * rank, 0 * rank, 0 * rank + 128 * 257, 7 * 256 + rank + 128 * wood], axis=1)
+    found = ask([], "stand_of(xy, voxel)", {"xy": xy, "voxel": voxel}, 2, terrain=terrain)[:, 0]
+    exact = between(share / 255.0, PRESENCE_CELL, xy.astype(float))
+    # Eight bits, filtered with eight more; a fifth of them lies this near.
+    clear = np.abs(exact - rank / 128) > 0.015
+    assert clear.mean() > 0.7
+    return float((found[clear] != (exact > rank / 128)[clear]).mean())
 
 
-def test_trees_stand_where_bilinear_cover_exceeds_one_half(ask: Ask) -> None:
-    assert cover_error(ask) == 0
+def test_trees_stand_where_the_share_exceeds_their_rank(ask: Ask) -> None:
+    assert stand_error(ask) == 0
 
 
-def test_a_cover_turned_round_is_found(ask: Ask, spoil: Callable) -> None:
-    with spoil("forest/world.glsl", "return xy / (terrain_cell * terrain_nodes) + 0.5;",
-               "return vec2(xy.x, -xy.y) / (terrain_cell * terrain_nodes) + 0.5;"):
-        assert cover_error(ask) > 0.2
+@pytest.mark.parametrize(("right", "wrong"), [
+    ("return xy / (terrain_cell * terrain_nodes) + 0.5;", "return vec2(xy.x, -xy.y) / (terrain_cell * terrain_nodes) + 0.5;"),
+    ("mod(two_bytes(voxel.w).y, 128.0)", "two_bytes(voxel.w).y"),
+])
+def test_a_wrong_stand_is_found(ask: Ask, spoil: Callable, right: str, wrong: str) -> None:
+    with spoil("forest/world.glsl", right, wrong):
+        assert stand_error(ask) > 0.1
 
 
 def test_the_next_stand_is_never_nearer_than_said() -> None:
-    grid = np.zeros((NODES, NODES), np.float32)
-    grid[100, 40] = grid[400, 300] = 1
-    made = fine_cover(grid)
-    row, column = np.nonzero(made[..., 0] > 0)
-    places = RNG.integers(0, NODES * COVER_FINER, (300, 2))
-    distance = np.hypot(places[:, :1] - row, places[:, 1:] - column).min(axis=1) * CELL / COVER_FINER
-    said = made[places[:, 0], places[:, 1], 1].astype(float)
-    assert (said <= distance + 1).all()
+    share = np.zeros((PRESENCE_SIDE, PRESENCE_SIDE), np.uint8)
+    share[200, 81] = share[801, 600] = 1
+    made = stand_texture(share).astype(float)
+    row, column = np.nonzero(share[::-1])
+    # Between texels the share and the distance are both filtered: nothing stands farther than a texel from its own.
+    places = RNG.uniform(1, PRESENCE_SIDE - 2, (300, 2))
+    distance = (np.hypot(places[:, :1] - row, places[:, 1:] - column).min(axis=1) - np.sqrt(2)) * PRESENCE_CELL
+    said = ndimage.map_coordinates(made[..., 1], places.T, order=1)
+    assert (said <= np.maximum(distance, 0)).all()
     assert said.max() > 100
+
+
+def local(growth: float) -> dict[str, np.ndarray]:
+    """Level ground whose stands are taller to the east."""
+    x = np.linspace(-1, 1, NODES, dtype=np.float32)
+    return worlds.ground() | {"growth": np.broadcast_to(1 + growth * x, (NODES, NODES)).copy()}
+
+
+def test_the_layer_is_as_high_as_the_stand(ask: Ask) -> None:
+    xy = RNG.uniform(-HALF, HALF, (500, 2)).astype(np.float32)
+    found = ask([], "layer_height(xy)", {"xy": xy}, terrain=local(0.5), local=True)[:, 0]
+    np.testing.assert_allclose(found, CANOPY_HEIGHT * (1 + 0.5 * xy[:, 0] / HALF), rtol=1e-3)
+    assert (ask([], "layer_height(xy)", {"xy": xy}, terrain=local(0.5))[:, 0] == CANOPY_HEIGHT).all()
 
 
 def test_the_patch_of_tiles_holds_the_square() -> None:

@@ -28,6 +28,9 @@ E_SKY = (1.0, 2.0, 4.0)
 
 GROUND = (0.3, 0.2, 0.1)
 LAYERS, SIZE = 32, 256
+RANK = 64
+"""Of all hand-made trees: they stand where more than half of a stand does."""
+
 UP = (128, 128, 255)
 """A normal that points up, as eight bits hold it: half a step off."""
 
@@ -48,7 +51,10 @@ def ground(elevation: np.ndarray | float = 0.0, cover: np.ndarray | float = 1.0)
     """The `terrain` bake: level and wooded by default; its surface carries no stands."""
     z = np.array(np.broadcast_to(np.asarray(elevation, np.float32), (NODES, NODES)))
     stands = np.array(np.broadcast_to(np.asarray(cover, np.float32), (NODES, NODES)))
-    return {"elevation": z, "cover": stands, "surface": z, "base": np.zeros(())}
+    # Twice as fine as the nodes, each a yes or no: trees of rank 64 stand where the nearest node says so.
+    presence = np.repeat(np.repeat(stands > 0.5, 2, axis=0), 2, axis=1) * np.uint8(255)
+    return {"elevation": z, "cover": stands, "surface": z, "base": np.zeros(()), "presence": presence,
+            "growth": np.ones((NODES, NODES), np.float32)}
 
 
 def uniform(alpha: int, albedo: float = 0.5, ambient: int = 0, layers: slice = slice(None)) -> dict[str, np.ndarray]:
@@ -60,7 +66,7 @@ def uniform(alpha: int, albedo: float = 0.5, ambient: int = 0, layers: slice = s
     full = np.arange(LAYERS)[layers] if alpha else np.array([1000])
     away = np.abs(np.arange(LAYERS)[:, None] - full).min(axis=1)
     # The ground counts as matter here: a longer skip would pass through a sharp brink unseen.
-    anchor[..., 2], anchor[..., 3] = np.minimum(away, np.arange(LAYERS))[:, None, None], 0
+    anchor[..., 2], anchor[..., 3] = np.minimum(away, np.arange(LAYERS))[:, None, None], RANK
     normal = np.empty((*shape, 4), np.uint8)
     normal[...] = (*UP, ambient)
     level = {"colour": colour, "normal": normal, "anchor": anchor}
@@ -147,7 +153,7 @@ def grove_pattern(arguments: dict[str, Any], inputs: dict[str, Arrays], progress
     """Ellipsoidal crowns on trunks, six to a triangle, none across an edge."""
     rng = np.random.default_rng(5)
     colour, normal, anchor = (np.zeros((LAYERS, SIZE, SIZE, 4), np.uint8) for _ in range(3))
-    normal[...], anchor[...] = (*UP, 150), (128, 128, 0, 0)
+    normal[...], anchor[...] = (*UP, 150), (128, 128, 0, RANK)
     height = ((np.arange(LAYERS) + 0.5) * VOXEL)[:, None, None]
     for p, q, n in np.ndindex(4, 4, 12):
         # Places in the upward triangle; its mirror image in the downward one.
@@ -173,7 +179,8 @@ def grove_pattern(arguments: dict[str, Any], inputs: dict[str, Arrays], progress
         normal[here] = np.where(near[..., None], np.concatenate([out / length * 127 + 128, 90 + 80 * near[..., None]],
                                                                 axis=-1), normal[here])
         anchor[here] = np.where(near[..., None] | full[..., None],
-                                np.concatenate([np.clip(np.rint(feet), 0, 255), 0 * feet], axis=-1), anchor[here])
+                                np.concatenate([np.clip(np.rint(feet), 0, 255), 0 * feet + [0, RANK]],
+                                               axis=-1), anchor[here])
     anchor[..., 2] = safe_distance(colour[..., 3] > 0)
     level = {"colour": colour, "normal": normal, "anchor": anchor}
     coarser = {f"{name}_{n}": array for n, given in enumerate(mips(level), 1) for name, array in given.items()}

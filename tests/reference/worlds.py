@@ -38,9 +38,12 @@ def flat(
     colour[..., :3] = np.round(opacity[..., None] * albedo)
     normal = np.empty_like(colour)
     normal[...] = (*UP, ambient)
+    # every tree of the middle rank: it stands where the cover exceeds one half
+    anchor = np.full_like(colour, 128)
+    anchor[..., 3] = 64
     given: dict[str, Any] = {
         "elevation": np.zeros((nodes, nodes)), "cover": np.ones((nodes, nodes)), "cell": 8.0, "canopy_height": 20.0,
-        "tile_side": 40.0, "voxel": 0.625, "colour": colour, "normal": normal, "anchor": np.full_like(colour, 128),
+        "tile_side": 40.0, "voxel": 0.625, "colour": colour, "normal": normal, "anchor": anchor,
         "tile": np.zeros((2, 2, 8, 2), np.uint8), "seed": 7, "tint_strength": 0.0, "ground_albedo": GROUND,
         "e_sun": E_SUN, "e_sky": (0.0, 0.0, 0.0), "sun": (0.0, 0.0, 1.0)}
     given.update(changes)
@@ -63,6 +66,7 @@ def grove(seed: int = 1, size: int = 128, trees: int = 3, **changes: Any) -> For
     normal = np.zeros((layers, size, size, 4), np.uint8)
     normal[...] = (*UP, 140)
     anchor = np.full((layers, size, size, 4), 128, np.uint8)
+    anchor[..., 3] = 64
     height = (np.arange(layers) + 0.5) * 20.0 / layers
     for p, q, _ in np.ndindex(4, 4, trees):
         i0, j0 = ((p, q) + rng.uniform(0.25, 0.7, 2)) * cell

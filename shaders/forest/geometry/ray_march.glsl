@@ -20,12 +20,13 @@ void geometry_trace(vec3 origin, vec3 direction, float t, vec4 jitter, inout Eve
         float above = p.z - ground.x;
         float gap = above - canopy_top;
         bool over = gap > 0.0;
-        float h = clamp(above / canopy_height, 0.0, 1.0);
+        float layer = layer_height(p.xy);
+        float h = clamp(above / layer, 0.0, 1.0);
         vec4 voxel = voxel_at(vec3(atlas_coordinate(p.xy), h) + scale * offset, level);
         bool gone = t > scene_reach || (over && direction.z >= 0.0 && p.z > scene_top);
         found = above <= 0.0 ? 2 : gone ? 0 : 1;
-        vec2 stand = cover_at(foot_of(p.xy, voxel));
-        float alpha = found == 1 && !over ? (1.0 - pow(1.0 - opacity_of(voxel), geometry_step)) * stand.x : 0.0;
+        vec2 stand = stand_of(p.xy, voxel);
+        float alpha = found == 1 && !over && above <= layer ? (1.0 - pow(1.0 - opacity_of(voxel), geometry_step)) * stand.x : 0.0;
         float opacity = 1.0 - (1.0 - event.opacity) * (1.0 - alpha);
         if (opacity > 1.0 - geometry_stop) {
             opacity = 1.0;

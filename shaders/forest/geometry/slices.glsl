@@ -13,13 +13,13 @@ float to_next_sheet(float above, float climb, float spacing, out float sheet) {
 
 // Formulas b2: alpha' = 1 - (1 - alpha)^(d' / voxel).
 void geometry_trace(vec3 origin, vec3 direction, float t, vec4 jitter, inout Event event) {
-    float spacing = canopy_height / float(geometry_count);
-    float longest = 2.0 * spacing;
     vec3 offset = voxel_offset(jitter) * vec3(1.0, 1.0, 0.0);
     float previous = t;
     int found = 1;
     for (int i = 0; i < MARCH_STEPS && found == 1; i++) {
         vec3 p = origin + t * direction;
+        float spacing = layer_height(p.xy) / float(geometry_count);
+        float longest = 2.0 * spacing;
         vec3 ground = ground_at(p.xy);
         float above = p.z - ground.x;
         float gap = above - canopy_top;
@@ -37,7 +37,7 @@ void geometry_trace(vec3 origin, vec3 direction, float t, vec4 jitter, inout Eve
         vec4 voxel = voxel_at(vec3(atlas_coordinate(q.xy), h) + exp2(level) * offset, level);
         float voxels = min(spacing / max(abs(climb), 0.02), 8.0 * spacing) / (voxel_size * exp2(level));
         float path = geometry_correct_opacity ? voxels : 1.0;
-        float alpha = meets && found == 1 ? (1.0 - pow(1.0 - opacity_of(voxel), path)) * covered(foot_of(q.xy, voxel)) : 0.0;
+        float alpha = meets && found == 1 ? (1.0 - pow(1.0 - opacity_of(voxel), path)) * stand_of(q.xy, voxel).x : 0.0;
         float opacity = 1.0 - (1.0 - event.opacity) * (1.0 - alpha);
         if (opacity > 0.98) {
             opacity = 1.0;

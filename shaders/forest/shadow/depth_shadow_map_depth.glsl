@@ -28,10 +28,11 @@ vec4 shadow_depth_texel(vec2 pixel) {
             t += max(step_above(gap, direction, ground), ds);
             continue;
         }
-        float h = above / canopy_height;
+        float layer = layer_height(p.xy);
+        float h = clamp(above / layer, 0.0, 1.0);
         vec4 voxel = voxel_at(vec3(atlas_coordinate(p.xy), h), level);
-        vec2 stand = cover_at(foot_of(p.xy, voxel));
-        if (opacity_of(voxel) * stand.x >= shadow_threshold) return vec4(t);
+        vec2 stand = stand_of(p.xy, voxel);
+        if (above <= layer && opacity_of(voxel) * stand.x >= shadow_threshold) return vec4(t);
         // No skip passes through the ground: a brink may stand in an empty canopy.
         float skip = max((free_voxels(voxel) - 1.0) / rate, stand.y - GLADE_REACH);
         t += max(min(skip, step_above(above, direction, ground)), ds);
