@@ -23,10 +23,8 @@ from server.protocol import Codec, FrameHeader, Idle, Refusal, pack
 
 log = logging.getLogger("umbrage")
 IN_FLIGHT = 2
-HELD_S = 0.090
-"""While a pointer is held, the view moves until no change came for this long."""
 RESTED_S = 0.060
-"""Without a pointer held, this long: a full picture must follow the last change within 0.15 s."""
+"""The view moves until no change came for this long: a full picture must follow the last change within 0.15 s."""
 PATIENCE = 2.0
 """Changes come no faster than pictures: they are waited for during so many times the last one, however slow it was."""
 PREVIEW_MS = 100.0
@@ -66,7 +64,6 @@ class Painter:
         self._controller = ScaleController(frame_ms)
         self._wake = asyncio.Event()
         self._timer: asyncio.TimerHandle | None = None
-        self._held = False
         self._touched = -1e9
         self._coarse_s = 0.0
         self._pause_until = -1e9
@@ -95,7 +92,6 @@ class Painter:
 
     def hold(self, active: bool) -> None:
         """A pointer went down, or up: up means rest at once."""
-        self._held = active
         if not active:
             self._touched = -1e9
             self._wake.set()
@@ -129,7 +125,7 @@ class Painter:
                 delivery.cancel()
 
     def _moving_until(self) -> float:
-        return self._touched + max(HELD_S if self._held else RESTED_S, PATIENCE * self._coarse_s)
+        return self._touched + max(RESTED_S, PATIENCE * self._coarse_s)
 
     def _next(self) -> Task | None:
         """The next thing to do, or None where nothing is to be done or the client is behind."""
