@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any
@@ -95,7 +96,7 @@ def bake_canopy_horizon(
 
     jobs = [(level, number) for level in range(len(heights)) for number in range(AZIMUTHS)]
     members = [set(sector_range(sector, sectors, AZIMUTHS).tolist()) for sector in range(sectors)]
-    with ThreadPoolExecutor(2) as pool:
+    with ThreadPoolExecutor(os.cpu_count() or 1) as pool:
         for done, (level, number, slopes) in enumerate(pool.map(one, jobs)):
             progress(done / len(jobs), "searching the canopy's horizon")
             for sector in range(sectors):

@@ -15,7 +15,7 @@ from renderer.forest.nursery import nursery
 from renderer.forest.pattern_kernels import extend, lay
 from renderer.forest.pattern_mips import encode_colour, encode_normal, mips
 from renderer.forest.planting import Standing, plant
-from renderer.forest.presence import safe_distance
+from renderer.forest.safe_distance import safe_distance
 from renderer.forest.tiles import RHOMBI, lattice, tile_table
 from renderer.forest.tree import Tree
 from renderer.forest.world_scale import CANOPY_HEIGHT, TILE_SIDE, VOXEL

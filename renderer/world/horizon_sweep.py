@@ -3,7 +3,7 @@
 The ray from a node is cut in two. **Near**, over its first rows (or columns, whichever it crosses faster): every
 crossing with a grid line is a sample of the bilinear surface, and the slope at the node itself is another. **Far**,
 beyond them: parallel lines run along the azimuth, one for each row or column they start from, and what a line has
-passed lies in a hull on a XX
+passed lies in a hull on a stack, whose top is the horizon.
 
 Exact are, near, the samples; and far, each line's tangent, which equals a search over all samples of that line. Not
 exact: the mean of two lines stands for the line between them, and far samples lie on rows only.

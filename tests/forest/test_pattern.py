@@ -10,7 +10,7 @@ from renderer.forest.edge_classes import CORNER, edge_distance, reduce_classes
 from renderer.forest.pattern import AXES, CELL, LAYERS, SIZE, WOOD, bake_pattern
 from renderer.forest.pattern_mips import coarser, decode, mips
 from renderer.forest.planting import MARGIN, plant
-from renderer.forest.presence import REACH, safe_distance
+from renderer.forest.safe_distance import REACH, safe_distance
 from renderer.forest.tiles import BOTTOM, DIAGONAL, LEFT, RHOMBI, lattice, locate
 from renderer.forest.tree import Tree
 from renderer.forest.world_scale import TILE_SIDE, VOXEL

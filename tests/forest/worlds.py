@@ -14,7 +14,7 @@ from renderer.core.params import merge, validate
 from renderer.core.registry import techniques
 from renderer.core.technique import Arrays, Bake, BakedArrays
 from renderer.forest.pattern_mips import mips
-from renderer.forest.presence import safe_distance
+from renderer.forest.safe_distance import safe_distance
 from renderer.forest.state import ForestState
 from renderer.forest.tiles import tile_table
 from renderer.forest.world_scale import CELL, NODES, VOXEL
