@@ -60,8 +60,8 @@ uniform vec2 picture_size;
 uniform vec2 pixel_offset;        // of the sample within its pixel, from the top-left corner
 uniform float sample_shift;       // [0, 1), turns the jitter from sample to sample"""
 
-RAY_OF_PIXEL = """// From sample to sample R4, the low-discrepancy sequence of Roberts 2018; from pixel to pixel the interleaved gradient
-// noise of Jimenez 2014, "Next Generation Post Processing in Call of Duty".
+RAY_OF_PIXEL = """// From sample to sample the low-discrepancy sequence R4 of Roberts 2018; from pixel to pixel
+// the interleaved gradient noise of Jimenez 2014, "Next Generation Post Processing in Call of Duty".
 const vec4 JITTER_TURNS = vec4(0.8566748838545029, 0.7338918566271260, 0.6287067210378087, 0.5385972572236101);
 vec4 pixel_ray(out vec2 corner, out vec3 origin, out vec3 direction) {
     corner = picture_pixel(gl_FragCoord.xy, picture_size) - 0.5;
