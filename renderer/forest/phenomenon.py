@@ -80,19 +80,19 @@ PRESETS = {
         {
             "camera": _orbit((200, 200, 280), 2300, 140, 30),
             "sun": _sun(190, 62),
-            "view": {"exposure": 1.16},
+            "view": {"exposure": 1.08},
             "filter": {"bias": 1.0},
         },
     ),
     "low_sun": Preset(
         "Low sun",
         "Late afternoon: long shadows from tree to tree.",
-        {"camera": _orbit((1150, -300, 265), 650, 305, 15), "sun": _sun(255, 18), "view": {"exposure": 1.49}},
+        {"camera": _orbit((1150, -300, 265), 650, 305, 15), "sun": _sun(255, 18), "view": {"exposure": 0.55}},
     ),
     "valley_sunset": Preset(
         "Valley at sunset",
         "The ridge has taken the sun from the valley floor.",
-        {"camera": _orbit((1600, -900, 400), 1500, 268, 5), "sun": _sun(292, 9), "view": {"exposure": 2.13}},
+        {"camera": _orbit((1600, -900, 400), 1500, 268, 5), "sun": _sun(292, 9), "view": {"exposure": 0.62}},
     ),
     "forest_edge": Preset(
         "Forest edge",
@@ -100,7 +100,7 @@ PRESETS = {
         {
             "camera": {"kind": "look", "eye": [964, 306, 81.5], "target": [975, 420, 84], "field_of_view": 50},
             "sun": _sun(160, 38),
-            "view": {"exposure": 1.26},
+            "view": {"exposure": 0.9},
         },
     ),
 }

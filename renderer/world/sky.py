@@ -217,11 +217,7 @@ def sky_for(tables: Mapping[str, np.ndarray], elevation: float) -> SkyNow:
 
 
 def metered_light(tables: Mapping[str, np.ndarray], elevation: float) -> float:
-    """How much light there is, as the dome of an incident light meter that looks up sees it, in W m-2.
-
-    A dome answers a beam at angle a from its axis by (1 + cos a) / 2 (ISO 2720:1974, cardioid receptor), so that a low
-    sun, which hardly lights level ground but lights trees from the side, still counts. Colours weigh as in Rec. 709.
-    Deviation: the sky counts as on a level plane.
+    """How much light falls on level ground from sun and sky together, its colours weighed as in Rec. 709, in W m-2.
 
     Args:
         tables: from `bake_sky`.
@@ -230,7 +226,7 @@ def metered_light(tables: Mapping[str, np.ndarray], elevation: float) -> float:
     suns = tables["elevations"]
     sun = LUMINANCE @ [np.interp(elevation, suns, column) for column in tables["sun_irradiance"].T]
     sky = LUMINANCE @ np.exp([np.interp(elevation, suns, column) for column in np.log(tables["sky_irradiance"]).T])
-    return float(0.5 * (1.0 + math.sin(elevation)) * sun + sky)
+    return float(max(math.sin(elevation), 0.0) * sun + sky)
 
 
 def sky_uniforms(now: SkyNow, sun_direction: Floats) -> dict[str, tuple[float, float, float]]:

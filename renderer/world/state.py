@@ -68,7 +68,6 @@ class View(Model):
         label="Follow the light",
         help="Exposure follows the light of sun and sky; otherwise it stays at that of a clear noon.",
         cost="host",
-        source="ISO 2720:1974, incident light with a cardioid receptor",
     )
     exposure: float = param(
         1.0,
@@ -76,8 +75,8 @@ class View(Model):
         help="Stops above the exposure that shows an 18 % grey as it is; woods and meadows are about one darker.",
         unit="EV",
         cost="host",
-        ge=-24,
-        le=24,
+        ge=-16,
+        le=16,
         step=0.1,
     )
     tone_curve: ToneCurve = param(
@@ -105,7 +104,7 @@ class SceneState(Model):
 def exposure_ev(view: View, light: float) -> float:
     """Stops by which radiance in W m-2 sr-1 is brightened for display.
 
-    A matt 18 % grey in that light sends 0.18 light / pi, and log2(pi / light) shows it as 0.18 of the screen's light by
+    A matt, level 18 % grey sends 0.18 light / pi, and log2(pi / light) shows it as 0.18 of the screen's light by
     the linear curve: so an incident light meter sets a camera. `view.exposure` comes on top. All depends on the state
     and nothing on the picture, so that every door shows the same, and nothing flickers.
 
@@ -140,4 +139,4 @@ def _view_of_first(view: Any) -> Any:
     old = view.get("exposure", -6.5) if isinstance(view, dict) else None
     if isinstance(old, bool) or not isinstance(old, (int, float)) or not -24 <= old <= 24:
         return view  # refused by its name, like any other wrong value
-    return {**view, "auto_exposure": False, "exposure": min(old + math.log2(NOON / math.pi), 24.0)}
+    return {**view, "auto_exposure": False, "exposure": min(old + math.log2(NOON / math.pi), 16.0)}

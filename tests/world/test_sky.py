@@ -66,9 +66,9 @@ def test_a_sky_of_radiance_one_gives_pi() -> None:
     assert (weights * np.sin(elevations)[:, None]).sum() == pytest.approx(2.0 * math.pi / 3.0, rel=1e-3)
 
 
-@pytest.mark.parametrize(("degrees", "share"), [(90.0, 1.0), (30.0, 0.75), (0.0, 0.5)])
-def test_the_meter_is_a_dome(tables: Tables, degrees: float, share: float) -> None:
-    """A sun overhead counts whole and one on the horizon half (ISO 2720); the sky comes on top, green weighs most."""
+@pytest.mark.parametrize(("degrees", "share"), [(90.0, 1.0), (30.0, 0.5), (0.0, 0.0), (-5.0, 0.0)])
+def test_the_meter_lies_level(tables: Tables, degrees: float, share: float) -> None:
+    """A beam counts by its sine, and not at all from below; the sky comes on top; green weighs most."""
     white = {**tables, "sun_irradiance": np.full_like(tables["sun_irradiance"], 100.0)}
     white["sky_irradiance"] = np.full_like(tables["sky_irradiance"], 7.0)
     assert metered_light(white, math.radians(degrees)) == pytest.approx(100.0 * share + 7.0)
