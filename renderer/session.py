@@ -29,6 +29,7 @@ from renderer.world.state import SceneState, migrate, samples_of
 if TYPE_CHECKING:
     from renderer.comparing import Comparison
     from renderer.study.measure import Measurement
+    from renderer.sun_study import SunStudy
     from renderer.truth import Judge
 
 Report = Callable[[Progress], None]
@@ -189,6 +190,29 @@ class Session:
 
         return comparing.compare(self, state, width, height, on_progress, judge)
 
+    def sunlight(
+        self,
+        period: Mapping[str, Any],
+        state: SceneState | None = None,
+        files: Mapping[str, Path] | None = None,
+        on_progress: Report | None = None,
+    ) -> SunStudy:
+        """Hours of direct sun and irradiation over a land, from the cache as far as it has them; blocks.
+
+        Args:
+            period: a document of `renderer.world.sun_course.SunlightPeriod`: days, place, receiver.
+            state: the land that it draws, with its trees;
+            files: without one, an elevation model, `terrain`, and heights of the canopy over it, `canopy`.
+            on_progress: told how far the work is; may raise `Cancelled`.
+
+        Raises:
+            InvalidDocument, InputError, LimitError: naming the argument.
+        """
+        from renderer import sun_studying
+
+        land = sun_studying.land_of_files(files or {}) if state is None else sun_studying.land_of_state(self, state)
+        return sun_studying.study(self._long, self.cache, land, period, on_progress)
+
     def view(self) -> View:
         """A canvas of its own: its mean of samples, and its mailbox on the GL thread."""
         with self._lock:
@@ -197,35 +221,10 @@ class Session:
         return View(name, self.gl, self._painter, self._arrays)
 
     def add_asset(self, path: Path, filename: str, reading: Mapping[str, Any] | None = None) -> dict[str, Any]:
-        """Check an uploaded file in a process of its own and keep it.
+        """Check an uploaded file in a process of its own and keep it: see `renderer.world.upload.admit`."""
+        from renderer.world.upload import admit
 
-        Args:
-            path: the file.
-            filename: what its owner calls it.
-            reading: fields of its kind's reading that the file leaves unsaid, as `{"holes": "fill"}`; a document that
-                uses the file has to say them too.
-
-        Returns:
-            Its `asset` (as documents name it), kind, name, `reading` as given, preview, and when it `expires` unless it
-            is used (seconds since 1970).
-
-        Raises:
-            AssetError, LimitError: what is wrong with it, in words.
-        """
-        from renderer.world.upload import check_in_worker, recognise
-
-        said = dict(reading or {})
-        kind = recognise(path, filename)
-        preview = check_in_worker(path, kind, reading=said)
-        digest = self.assets.put(path.read_bytes(), kind, filename)
-        return {
-            "asset": f"asset:{digest}",
-            "kind": kind,
-            "name": filename,
-            "reading": said,
-            "preview": preview,
-            "expires": self.assets.get(digest).expires,
-        }
+        return admit(self.assets, path, filename, reading)
 
     @staticmethod
     def quantities() -> list[dict[str, Any]]:

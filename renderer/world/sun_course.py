@@ -77,10 +77,11 @@ class SunlightPeriod(Model):
         ge=-180,
         le=180,
     )
-    receiver: Literal["ground", "canopy"] = param(
+    receiver: Literal["ground", "canopy", "bare"] = param(
         "ground",
         label="On",
-        help="What the sun falls on: the ground, dark where trees stand, or the canopy's top.",
+        help="What the sun falls on: ground between trees, the top of the trees and what lies between, or bare ground, "
+        "as if no tree stood.",
         cost="bake",
     )
     turbidity: float = param(

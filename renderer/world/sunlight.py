@@ -4,7 +4,7 @@ After Dozier and Frew 1990: horizons by azimuth, the sky's share by their integr
 each bin of suns (`renderer.world.sun_course`) says which of them a node sees.
 
 Assumed: flat Earth, level land beyond the grid, an evenly bright sky, no light from the ground, trees that let nothing
-through.
+through. It claims nothing about the ground under trees.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ class Light:
         cell_size: (dx, dy) m.
         suns: of the range.
         altitudes: those of the suns' light, m.
-        receiver: `ground` or `canopy`.
+        receiver: as `SunlightPeriod.receiver`.
     """
 
     ground: NDArray[np.float32]
@@ -70,13 +70,24 @@ class Light:
             progress: told the share done; may raise `Cancelled`.
 
         Returns:
-            (N, 4): hours of direct sun [h], irradiation by beam and by sky [kWh m-2], share of the sky.
+            (N, 4): hours of direct sun [h], irradiation by beam and by sky [kWh m-2], share of the sky; NaN on the
+            ground under trees.
         """
+        if self.receiver == "ground":
+            lit = (self.surface - self.ground)[nodes[:, 0], nodes[:, 1]] <= COVERED
+        else:
+            lit = np.ones(len(nodes), np.bool_)
+        result = np.full((len(nodes), kernels.CHANNELS), np.nan, np.float32)
+        result[lit] = self._of(np.ascontiguousarray(nodes[lit]), progress or _silent)
+        return result
+
+    def _of(self, nodes: NDArray[np.int64], progress: Progress) -> NDArray[np.float32]:
+        surface = self.ground if self.receiver == "bare" else self.surface
         low, high = self.altitudes
         rows, columns = nodes[:, 0], nodes[:, 1]
         share = np.clip((self.ground[rows, columns] - low) / max(high - low, 1e-6), 0.0, 1.0).astype(np.float64)
         normals = land.normals(self.ground, self.cell_size)[rows, columns]
-        levels = kernels.pyramid(self.surface)
+        levels = kernels.pyramid(surface)
         steps = along(self.suns.azimuths, self.cell_size)
         around = np.arange(SKY_DIRECTIONS, dtype=np.float64) * (2 * np.pi / SKY_DIRECTIONS)
         sky = np.concatenate([along(around, self.cell_size), np.sin(around)[:, None], np.cos(around)[:, None]], axis=1)
@@ -84,13 +95,11 @@ class Light:
 
         def part(first: int) -> None:
             several = slice(first, first + CHUNK)
-            kernels.light(self.surface, levels, nodes[several], normals[several], share[several], steps,
+            kernels.light(surface, levels, nodes[several], normals[several], share[several], steps,
                           self.suns.firsts, self.suns.tangents, self.suns.sums, sky, self.suns.diffuse,
                           result[several])  # fmt: skip
 
-        _in_threads(part, range(0, len(nodes), CHUNK), progress or _silent)
-        if self.receiver == "ground":
-            result[(self.surface - self.ground)[rows, columns] > COVERED] = 0.0
+        _in_threads(part, range(0, len(nodes), CHUNK), progress)
         return result
 
 

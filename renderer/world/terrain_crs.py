@@ -78,6 +78,19 @@ def place(crs: Crs, x: float, y: float) -> tuple[float, float] | None:
     return None if zone is None else _from_utm(x, y, *zone)
 
 
+def north_of(crs: Crs, x: float, y: float) -> float:
+    """Bearing of the grid's north from true north at a point of `crs`, clockwise, in radians: the meridian convergence.
+
+    0 where the system is not known here; longitude and latitude and Web Mercator have none.
+    """
+    step = 100.0 / crs.unit[1]
+    here, ahead = place(crs, x, y), place(crs, x, y + step)
+    if here is None or ahead is None:
+        return 0.0
+    east, north = metres_per_degree(here[0])
+    return math.atan2((ahead[1] - here[1]) * east, (ahead[0] - here[0]) * north)
+
+
 def _from_utm(easting: float, northing: float, zone: int, south: bool) -> tuple[float, float]:
     """Inverse transverse Mercator, degrees: Krueger's series to third order, below 1 mm within a zone.
 

@@ -10,7 +10,7 @@ import math
 import re
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 import numpy as np
 import tifffile
@@ -246,11 +246,11 @@ def _crs(
     return crs, ()
 
 
-def save_geotiff(path: Path, values: np.ndarray, terrain: Terrain) -> None:
+def save_geotiff(path: Path | BinaryIO, values: np.ndarray, terrain: Terrain) -> None:
     """Write an array on a terrain's grid as GeoTIFF, in the coordinate system that the terrain came with.
 
     Args:
-        path: the file to write.
+        path: the file to write, or where its bytes go.
         values: (rows, columns) of the terrain, as its elevation or hours of sun; NaN where there is none.
         terrain: gives cells, origin and coordinate system; without one, pixels are metres without a place.
 

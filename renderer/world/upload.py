@@ -12,6 +12,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Literal, get_args
 
+from renderer.core.cache import AssetStore
 from renderer.core.errors import AssetError, InputError, LimitError
 from renderer.world.arrays import npz_names
 from renderer.world.image_files import MAGIC
@@ -136,3 +137,34 @@ def _answer(output: bytes, limits: Limits) -> dict[str, Any]:
         raise kind(str(error["field"]), str(error["message"]), str(error["allowed"]))
     preview: dict[str, Any] = answer["preview"]
     return preview
+
+
+def admit(store: AssetStore, path: Path, filename: str, reading: Mapping[str, Any] | None = None) -> dict[str, Any]:
+    """Check an uploaded file in a process of its own and keep it.
+
+    Args:
+        store: where.
+        path: the file.
+        filename: what its owner calls it.
+        reading: fields of its kind's reading that the file leaves unsaid, as `{"holes": "fill"}`; a document that
+            uses the file has to say them too.
+
+    Returns:
+        Its `asset` (as documents name it), kind, name, `reading` as given, preview, and when it `expires` unless it
+        is used (seconds since 1970).
+
+    Raises:
+        AssetError, LimitError: what is wrong with it, in words.
+    """
+    said = dict(reading or {})
+    kind = recognise(path, filename)
+    preview = check_in_worker(path, kind, reading=said)
+    digest = store.put(path.read_bytes(), kind, filename)
+    return {
+        "asset": f"asset:{digest}",
+        "kind": kind,
+        "name": filename,
+        "reading": said,
+        "preview": preview,
+        "expires": store.get(digest).expires,
+    }

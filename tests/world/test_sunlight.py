@@ -178,11 +178,13 @@ def test_trees_shade_the_ground_and_stand_in_the_sun_themselves() -> None:
     light = replace(light_of(ground), surface=surface)
     nodes = np.array([[10, 20], [28, 20], [22, 20]])
     stand, shaded, open_ = light.at(nodes)
-    assert np.all(stand == 0)
+    assert np.all(np.isnan(stand))
     assert 0 < shaded[0] < open_[0] < light.suns.hours
     top = replace(light, receiver="canopy").at(nodes)
     assert top[0, 0] == pytest.approx(light.suns.hours)
     np.testing.assert_array_equal(top[1:], [shaded, open_])
+    bare = replace(light, receiver="bare").at(nodes)
+    np.testing.assert_allclose(bare[:, 0], light.suns.hours)
 
 
 def test_work_that_nobody_wants_stops() -> None:
