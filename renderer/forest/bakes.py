@@ -46,15 +46,15 @@ def canopy_horizon_bake(pattern: Bake, sectors: int, heights: list[float]) -> Ba
     )
 
 
-def sky_bake() -> Bake:
+def sky_bake(state: ForestState) -> Bake:
     """Sun and sky light by elevation."""
-    return Bake("sky", bake_sky, {}, seconds=8)
+    return Bake("sky", bake_sky, bake_arguments(state.air), seconds=8)
 
 
 def bakes(state: ForestState) -> list[Bake]:
     """Every precomputation a state needs, inputs first, each once."""
     terrain, pattern = ground_bake(state), pattern_bake(state)
-    wanted = [sky_bake(), terrain, pattern]
+    wanted = [sky_bake(state), terrain, pattern]
     for technique in state.techniques().values():
         wanted += technique.bakes(state, terrain, pattern)
     return list({(bake.name, str(bake.arguments)): bake for bake in wanted}.values())

@@ -8,6 +8,7 @@ from pydantic import Field
 
 from renderer.core.params import Colour, Model, param
 from renderer.core.registry import slot_union
+from renderer.world.atmosphere import Atmosphere
 from renderer.world.camera import Camera, Orbit
 from renderer.world.mesh import MeshReading
 from renderer.world.state import SceneState
@@ -216,6 +217,7 @@ class ForestState(SceneState):
     )
     terrain: Terrain = param(BuiltInTerrain(), label="Terrain", help="The land.", cost="bake")
     cover: Cover = param(Cover(), label="Cover", help="Where trees may stand.", cost="bake")
+    air: Atmosphere = param(Atmosphere(), label="Air", help="What sun and sky shine through.", cost="bake")
     canopy: Canopy = param(Canopy(), label="Trees", help="What grows there.", cost="bake")
     ground: Ground = param(Ground(), label="Ground and tint", help="Ground colour and the trees' own.")
     geometry: slot_union("forest", "geometry") = _slot("geometry", "Geometry", "How the canopy is sampled along a ray.")  # type: ignore[valid-type]

@@ -69,5 +69,6 @@ def test_only_what_a_bake_reads_changes_it() -> None:
         assert keys(**live) == plain
     assert keys(cover={"clearings": 0.5})["terrain"] != plain["terrain"]
     assert keys(canopy={"seed": 9})["pattern"] != plain["pattern"]
+    assert keys(air={"haze": 20})["sky"] != plain["sky"]
     assert keys(shadow={"sectors": 4})["terrain_horizon"] != plain["terrain_horizon"]
     assert set(keys(shadow={"kind": "none"})) == {"sky", "terrain", "pattern"}
