@@ -142,14 +142,6 @@ def _along(nw, ne, sw, se, px, py, dx, dy):
     return nw + a * px + b * py + k * px * py, a * dx + b * dy + k * (px * dy + py * dx), k * dx * dy
 
 
-@njit(cache=True, nogil=True, inline="always")
-def _along(nw, ne, sw, se, px, py, dx, dy):
-    """Coefficients of 1, t, t^2 of a bilinear cell's value along (px + dx t, py + dy t), from its north-west corner."""
-    a, b = ne - nw, sw - nw
-    k = se - sw - a
-    return nw + a * px + b * py + k * px * py, a * dx + b * dy + k * (px * dy + py * dx), k * dx * dy
-
-
 @njit(cache=True, nogil=True)
 def _cell(scene, o, d, s, end, i, j, tau, limit, step, solid, mode, own, record, n):
     """March the part of a ray over terrain cell (row i, column j). Returns (status, s, tau, n)."""
