@@ -210,7 +210,7 @@ class Session:
         """
         from renderer import sun_studying
 
-        land = sun_studying.land_of_files(files or {}) if state is None else sun_studying.land_of_state(self, state)
+        land = sun_studying.land_of(self, state, files or {})
         return sun_studying.study(self._long, self.cache, land, period, on_progress)
 
     def view(self) -> View:

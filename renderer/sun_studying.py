@@ -10,7 +10,7 @@ import functools
 import hashlib
 import time
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -19,7 +19,7 @@ import numpy as np
 from renderer.core.baking import bake_key
 from renderer.core.cache import Cache
 from renderer.core.channel import Progress
-from renderer.core.errors import AssetError, InputError, LimitError, UmbrageError
+from renderer.core.errors import InputError, LimitError, UmbrageError
 from renderer.core.params import validate
 from renderer.core.registry import phenomenon
 from renderer.core.technique import Arrays, Bake
@@ -28,9 +28,9 @@ from renderer.forest.world_scale import CELL
 from renderer.sun_study import SunStudy, meta_of
 from renderer.world import sun, sun_course, sunlight, sunlight_kernels
 from renderer.world.sun_course import Place, SunlightPeriod, course
-from renderer.world.sunlight import COVERED, Light
-from renderer.world.terrain import DEFAULT_CENTRE, Terrain, crop, default_terrain, load_terrain
-from renderer.world.terrain_crs import north_of
+from renderer.world.sunlight import Light
+from renderer.world.sunlit_land import Land, check_receiver, land_of_files, place_of
+from renderer.world.terrain import DEFAULT_CENTRE, crop, default_terrain, load_terrain
 
 if TYPE_CHECKING:
     from renderer.session import Session
@@ -43,52 +43,6 @@ NODES = 1 << 24
 
 SECONDS_PER_NODE = 50e-6
 """On two cores, for a year: to announce the cost."""
-
-
-@dataclass(frozen=True)
-class Land:
-    """What is lit.
-
-    Attributes:
-        terrain: its ground, m above the sea, with its place on Earth.
-        surface: (rows, columns) m above the sea: what hides the sun, the ground with the trees on it.
-    """
-
-    terrain: Terrain
-    surface: np.ndarray
-
-    @property
-    def wooded(self) -> bool:
-        """Whether anything stands on the ground."""
-        return bool((self.surface > self.terrain.elevation).any())
-
-    @property
-    def closed(self) -> bool:
-        """Whether no ground is left between the trees."""
-        return bool((self.surface - self.terrain.elevation > COVERED).all())
-
-
-def place_of(period: SunlightPeriod, land: Land) -> Place:
-    """Where the sun of a study stands over its land.
-
-    Raises:
-        InputError: neither the land nor the study says where it lies.
-    """
-    terrain = land.terrain
-    found = {}
-    for name in ("latitude", "longitude"):
-        said = getattr(period, name)
-        found[name] = said if said is not None else getattr(terrain, name)
-        if found[name] is None:
-            raise InputError(name, "is not in the land's file, so it must be said", "degrees")
-    low, high = (float(np.clip(edge(terrain.elevation), -500, 9000)) for edge in (np.min, np.max))
-    rows, columns = terrain.elevation.shape
-    bearing = 0.0
-    if terrain.crs is not None:
-        step = [cell / unit for cell, unit in zip(terrain.cell_size, terrain.crs.unit, strict=True)]
-        centre = (terrain.origin[0] + (columns - 1) / 2 * step[0], terrain.origin[1] - (rows - 1) / 2 * step[1])
-        bearing = north_of(terrain.crs, *centre)
-    return Place(float(found["latitude"]), float(found["longitude"]), bearing, (low, high))
 
 
 def _kept(arguments: dict[str, Any], inputs: dict[str, Arrays], progress: Callable[[float, str], None]) -> Arrays:
@@ -151,11 +105,8 @@ def study(
     rows, columns = land.terrain.elevation.shape
     if rows * columns > NODES:
         raise LimitError("terrain", f"has {rows:,} x {columns:,} nodes", f"at most {NODES:,} in all")
-    if checked.receiver == "canopy" and not land.wooded:
-        raise InputError("receiver", "is the canopy, but no tree stands on this land", "ground, or bare")
+    check_receiver(checked.receiver, land)
     place = place_of(checked, land)
-    if checked.receiver == "ground" and land.closed:
-        raise InputError("receiver", "is the ground, but trees cover all of it", "canopy, or bare")
     suns = course(checked, place)  # now, so that a wrong range is refused before anything starts
     bakes = _blocks(checked, place, land, cache)
     parts = _computed(workers, cache, bakes, on_progress)
@@ -240,47 +191,14 @@ def _computed(workers: Workers, cache: Cache, bakes: list[Bake], on_progress: Re
     return found
 
 
-def land_of(terrain: Terrain, canopy: np.ndarray | None = None) -> Land:
-    """A land of a user's own.
-
-    Args:
-        terrain: its ground.
-        canopy: (rows, columns) heights over the ground, m; nothing below 0 counts.
-
-    Raises:
-        AssetError: the canopy has other nodes than the terrain.
-    """
-    if canopy is None:
-        return Land(terrain, terrain.elevation)
-    if canopy.shape != terrain.elevation.shape:
-        raise AssetError("canopy", f"has shape {canopy.shape}", f"{terrain.elevation.shape}, the terrain's")
-    return Land(terrain, terrain.elevation + np.maximum(canopy, 0).astype(np.float32))
-
-
-def land_of_files(files: Mapping[str, Path]) -> Land:
-    """The land of an elevation model, `terrain`, and of a raster of canopy heights on the same nodes, `canopy`.
-
-    Raises:
-        AssetError, LimitError: what is wrong with a file, in words.
-    """
-    try:
-        terrain = load_terrain(files["terrain"]) if "terrain" in files else default_terrain()
-    except InputError as failure:
-        raise failure.at("terrain") from None
-    if "canopy" not in files:
-        return land_of(terrain)
-    try:
-        return land_of(terrain, load_terrain(files["canopy"]).elevation)
-    except InputError as failure:
-        raise failure.at("canopy") from None
-
-
-def land_of_state(session: Session, state: Any) -> Land:
-    """The square that a state draws, with the tops of its stands.
+def land_of(session: Session, state: Any, files: Mapping[str, Path]) -> Land:
+    """The square that a state draws, with the tops of its stands; without a state, the land of files.
 
     Raises:
         InputError: the scene has no land.
     """
+    if state is None:
+        return land_of_files(files)
     bakes = [bake for bake in phenomenon(state.scene).bakes(state) if bake.name == "terrain"]
     if not bakes:
         raise InputError("scene", "has no land that the sun could shine on", "forest")

@@ -17,12 +17,13 @@ from renderer import sun_studying
 from renderer.core.baking import bake_key
 from renderer.core.cache import Cache
 from renderer.core.channel import Progress
-from renderer.core.errors import AssetError, Cancelled, InputError, InvalidDocument, LimitError
+from renderer.core.errors import Cancelled, InputError, InvalidDocument, LimitError
 from renderer.core.technique import Arrays
 from renderer.core.work import Workers
-from renderer.sun_studying import Land, land_of, land_of_files, place_of, study
+from renderer.sun_studying import study
 from renderer.world.sun_course import SunlightPeriod, course
 from renderer.world.sunlight import Light
+from renderer.world.sunlit_land import Land, land_of, place_of
 from renderer.world.terrain import Terrain, load_terrain
 from renderer.world.terrain_crs import Crs
 from renderer.world.terrain_grid import placed
@@ -136,16 +137,6 @@ def test_maps_and_numbers(workers: Workers, cache: Cache) -> None:
     assert not np.isnan(tops.hours).any()
 
 
-def test_a_grid_s_north_is_not_the_pole_s() -> None:
-    """The meridian convergence of UTM is (longitude - central meridian) sin(latitude), nearly."""
-    terrain = hills()
-    place = place_of(SunlightPeriod(), land_of(terrain))
-    assert (place.latitude, place.longitude) == (terrain.latitude, terrain.longitude)
-    expected = np.radians(terrain.longitude - 3.0) * np.sin(np.radians(terrain.latitude))
-    # East of the central meridian the grid's north lies clockwise of the true one.
-    assert place.bearing == pytest.approx(expected, rel=2e-3)
-
-
 NOWHERE = Terrain(np.array([[1.0, 2.0], [3.0, 5.0]], np.float32), (10.0, 10.0))
 
 
@@ -174,18 +165,3 @@ def test_wrong_arguments_and_too_much_land(workers: Workers, cache: Cache, monke
     monkeypatch.setattr(sun_studying, "NODES", 1000)
     with pytest.raises(LimitError, match="40 x 30 nodes"):
         study(workers, cache, land_of(hills()), DAY)
-
-
-def test_files_are_named_when_they_are_wrong(tmp_path: Path) -> None:
-    ground, canopy = tmp_path / "ground.npz", tmp_path / "canopy.npz"
-    np.savez(ground, elevation=np.zeros((4, 5), np.float32), cell_size=(2.0, 2.0))
-    np.savez(canopy, elevation=np.full((4, 5), 3, np.float32), cell_size=(2.0, 2.0))
-    assert land_of_files({"terrain": ground, "canopy": canopy}).closed
-    np.savez(canopy, elevation=np.zeros((5, 4), np.float32), cell_size=(2.0, 2.0))
-    with pytest.raises(AssetError) as refused:
-        land_of_files({"terrain": ground, "canopy": canopy})
-    assert refused.value.field == "canopy"
-    ground.write_bytes(b"no terrain")
-    with pytest.raises(AssetError) as refused:
-        land_of_files({"terrain": ground})
-    assert refused.value.field == "terrain"

@@ -47,13 +47,18 @@ def pyramid(surface: NDArray[np.floating]) -> Pyramid:
 
 
 @njit(cache=True, nogil=True)
+def _between(one, other, part):
+    return one * (1.0 - part) + other * part
+
+
+@njit(cache=True, nogil=True)
 def _height(surface, row, column):
     """Height of the bilinear surface at a point inside the grid."""
     i, j = min(int(row), surface.shape[0] - 2), min(int(column), surface.shape[1] - 2)
     v, u = row - i, column - j
-    north = surface[i, j] * (1.0 - u) + surface[i, j + 1] * u
-    south = surface[i + 1, j] * (1.0 - u) + surface[i + 1, j + 1] * u
-    return north * (1.0 - v) + south * v
+    north = _between(surface[i, j], surface[i, j + 1], u)
+    south = _between(surface[i + 1, j], surface[i + 1, j + 1], u)
+    return _between(north, south, v)
 
 
 @njit(cache=True, nogil=True)
@@ -71,6 +76,12 @@ def _start(surface, row, column, i, j, down, right, low, guess):
         if y >= 0.0 and y <= surface.shape[0] - 1 and x >= 0.0 and x <= surface.shape[1] - 1:
             best = max(best, (_height(surface, y, x) - eye) / guess)
     return best
+
+
+@njit(cache=True, nogil=True)
+def _onward(cell, reached, forward):
+    """The cell that a ray reached along an axis: never one that it left, which rounding would lead it back to."""
+    return max(cell, reached) if forward > 0.0 else min(cell, reached)
 
 
 @njit(cache=True, nogil=True)
@@ -114,25 +125,20 @@ def _horizon(surface, tops, starts, widths, row, column, down, right, low, high,
         distance = min(to_row, to_column)
         if hides:
             if to_row <= to_column:
-                u = column + distance * right - j
-                met = surface[line_row, j] * (1.0 - u) + surface[line_row, j + 1] * u
+                met = _between(surface[line_row, j], surface[line_row, j + 1], column + distance * right - j)
             else:
-                u = row + distance * down - i
-                met = surface[i, line_column] * (1.0 - u) + surface[i + 1, line_column] * u
+                met = _between(surface[i, line_column], surface[i + 1, line_column], row + distance * down - i)
             slope = (met - eye) / distance
             if slope > best:
                 best, where = slope, distance
-        # Rounding may not lead a ray back: along an axis that is not crossed its cell only ever grows (or shrinks).
         if to_row <= to_column:
             i = line_row if down > 0.0 else line_row - 1
         elif level > 0:
-            reached = int(row + distance * down)
-            i = max(i, reached) if down > 0.0 else min(i, reached)
+            i = _onward(i, int(row + distance * down), down)
         if to_column <= to_row:
             j = line_column if right > 0.0 else line_column - 1
         elif level > 0:
-            reached = int(column + distance * right)
-            j = max(j, reached) if right > 0.0 else min(j, reached)
+            j = _onward(j, int(column + distance * right), right)
         if i < 0 or j < 0 or i >= rows - 1 or j >= columns - 1:
             break
         # A wider view pays once the ray leaves its parent block.
