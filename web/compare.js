@@ -1,7 +1,7 @@
 // A beside B: another technique or the reference, by split, blink, difference or error map, with the numbers.
 
 import * as api from "./api.js";
-import { el, follow, freshId, say } from "./dom.js";
+import { el, follow, freshId, say, segments, terms } from "./dom.js";
 import { Progress } from "./notices.js";
 
 const BLINK_MS = 700;
@@ -31,28 +31,24 @@ export class Compare {
   }
 
   build() {
-    const slots = this.store.scene.slots;
-    const name = freshId("mode");
-    this.slot = el("select", { class: "select", id: freshId("slot"), on: { change: () => this.fillKinds() } }, slots.map((slot) => el("option", { value: slot.name, text: slot.title })));
-    this.kind = el("select", { class: "select", id: freshId("kind"), on: { change: () => this.technique() } });
-    this.radios = MODES.map(([value, text]) => {
-      const radio = el("input", { type: "radio", name, value, on: { change: () => this.show(value) } });
-      return [radio, el("label", { class: "segment" }, radio, el("span", { text }))];
-    });
+    const picker = (change) => el("select", { class: "select", id: freshId("pick"), on: { change } });
+    const row = (text, control) => el("div", { class: "control" }, el("label", { class: "label", for: control.id, text }), control);
+    this.slot = picker(() => this.fillKinds());
+    this.slot.append(...this.store.scene.slots.map((slot) => el("option", { value: slot.name, text: slot.title })));
+    this.kind = picker(() => this.technique());
+    const modes = segments("How to compare", MODES, (mode) => this.show(mode));
+    this.radios = modes.radios;
     this.progress = new Progress(() => this.abort?.abort());
     this.progress.root.hidden = true;
     this.numbers = el("dl", { class: "costs" });
     this.scale = el("div", { class: "control", hidden: true });
-    this.gain = el("input", { type: "range", min: 1, max: 16, step: 1, value: 4, class: "slider", "aria-label": "Gain of the difference",
-      on: { input: () => this.screen.root.style.setProperty("--gain", this.gain.value) } });
-    this.gainRow = el("div", { class: "control", hidden: true }, el("div", { class: "control-head" }, el("span", { class: "label", text: "Gain" })), this.gain);
+    const gain = el("input", { type: "range", id: freshId("gain"), min: 1, max: 16, step: 1, value: 4,
+      on: { input: () => this.screen.root.style.setProperty("--gain", gain.value) } });
+    this.gainRow = row("Gain of the difference", gain);
     this.root.querySelector(".panel-body").replaceChildren(
-      el("div", { class: "control" }, el("label", { class: "label", for: this.slot.id, text: "B differs in" }), this.slot),
-      el("div", { class: "control" }, el("label", { class: "label", for: this.kind.id, text: "B uses" }), this.kind),
+      row("B differs in", this.slot), row("B uses", this.kind),
       el("button", { type: "button", class: "wide", text: "Compare with the reference", on: { click: () => this.reference() } }),
-      this.progress.root,
-      el("div", { class: "segments", role: "radiogroup", "aria-label": "How to compare" }, this.radios.map(([, label]) => label)),
-      this.gainRow, this.scale, this.numbers,
+      this.progress.root, modes.group, this.gainRow, this.scale, this.numbers,
       el("button", { type: "button", class: "quiet", text: "Stop comparing", on: { click: () => this.stop() } }));
     this.fillKinds(false);
     this.update();
@@ -112,8 +108,8 @@ export class Compare {
     };
     [this.judged, this.truth, this.errorMap] = await Promise.all(["picture", "reference", "error"].map(image));
     this.legend(result);
-    this.numbers.replaceChildren(...NUMBERS.filter(([key]) => result[key] !== null && result[key] !== undefined)
-      .flatMap(([key, title, write]) => [el("dt", { text: title }), el("dd", { text: write(result[key]) })]));
+    const known = NUMBERS.filter(([key]) => result[key] !== null && result[key] !== undefined);
+    this.numbers.replaceChildren(...terms(known.map(([key, title, write]) => [title, write(result[key])])));
     this.show("split");
   }
 
@@ -157,13 +153,13 @@ export class Compare {
   }
 
   update() {
-    for (const [radio] of this.radios ?? []) {
+    for (const radio of this.radios ?? []) {
       radio.checked = radio.value === this.mode;
       radio.disabled = radio.value === "error" && !this.truth;
     }
     this.gainRow.hidden = this.mode !== "difference";
     this.scale.hidden = !this.truth || this.mode !== "error";
-    this.handle.hidden = !(this.active && (this.mode === "split" || this.mode === "error"));
+    this.handle.hidden = !this.active || !["split", "error"].includes(this.mode);
     this.tagA.hidden = this.tagB.hidden = !this.active;
     this.screen.root.style.setProperty("--split", this.at);
     this.handle.setAttribute("aria-valuenow", Math.round(100 * this.at));

@@ -1,7 +1,7 @@
 // One control per declared parameter, made from its schema node: label, entry, unit, range, reset, error.
 
-import { el, follow, freshId, iconButton } from "./dom.js";
-import { same, valueAt, patchOf } from "./document.js";
+import { el, follow, freshId, humanise, iconButton, numberIn } from "./dom.js";
+import { patchOf, same, valueAt } from "./document.js";
 import { range, stepOf, unitOf } from "./schema.js";
 import { fromHex, toHex } from "./colour.js";
 
@@ -24,16 +24,21 @@ class Control {
     this.label = el("label", { for: this.id, class: "label", text: node.title ?? path });
     this.reset = iconButton("reset", `Reset ${node.title ?? path}`, () => this.set(context.defaultOf(path)), { class: "icon-button reset" });
     this.error = el("p", { class: "field-error", role: "alert", hidden: true });
-    this.row = el("div", { class: "control", data: { path } }, el("div", { class: "control-head" }, this.label, this.badge(), this.reset), this.error);
+    this.root = el("div", { class: "control", data: { path } }, el("div", { class: "control-head" }, this.label, this.badge(), this.reset), this.error);
     const hint = () => context.hint?.(node, path);
-    this.row.addEventListener("pointerenter", hint);
-    this.row.addEventListener("focusin", hint);
+    this.root.addEventListener("pointerenter", hint);
+    this.root.addEventListener("focusin", hint);
+    context.controls.set(path, this);
   }
 
   badge() {
     const cost = this.node.umbrage?.cost;
     const words = { bake: "Starts a precomputation", build: "Recompiles the shader" }[cost];
     return words ? el("span", { class: "badge", text: cost, title: words }) : null;
+  }
+
+  forget() {
+    this.context.controls.delete(this.path);
   }
 
   body(...nodes) {
@@ -54,13 +59,12 @@ class Control {
   fail(sentence) {
     this.error.textContent = sentence;
     this.error.hidden = !sentence;
-    this.row.classList.toggle("refused", Boolean(sentence));
+    this.root.classList.toggle("refused", Boolean(sentence));
   }
 
   refresh(document) {
     const value = valueAt(document, this.path);
     const standard = this.context.defaultOf(this.path);
-    this.reset.classList.toggle("unneeded", standard === undefined || same(value, standard));
     this.reset.disabled = standard === undefined || same(value, standard);
     if (value !== undefined) this.show(value);
   }
@@ -83,7 +87,7 @@ class NumberControl extends Control {
 
   track() {
     const name = `${this.node.title ?? this.path}, slider`;
-    this.slider = el("input", { type: "range", min: 0, max: SLIDER_STEPS, step: 1, "aria-label": name, class: "slider",
+    this.slider = el("input", { type: "range", min: 0, max: SLIDER_STEPS, step: 1, "aria-label": name,
       on: { input: () => this.slid(!this.dear), change: () => this.slid(true) } });
     const standard = this.context.defaultOf(this.path);
     const mark = el("span", { class: "mark", "aria-hidden": "true" });
@@ -112,16 +116,14 @@ class NumberControl extends Control {
   slid(send) {
     const value = this.fromSlider(Number(this.slider.value));
     this.entry.value = written(value, this.step);
-    this.fill();
     if (send) this.set(value);
   }
 
   /** What was typed goes to the server as it is, which refuses it in words where it must. */
   commit() {
-    const text = this.entry.value.trim().replace(",", ".").replace("−", "-");
-    const value = Number(text);
-    if (text === "" || !Number.isFinite(value)) this.fail(`“${text}” is not a number.`);
-    else this.set(value);
+    const value = numberIn(this.entry.value);
+    if (Number.isFinite(value)) this.set(value);
+    else this.fail(`“${this.entry.value}” is not a number.`);
   }
 
   key(event) {
@@ -149,17 +151,12 @@ class NumberControl extends Control {
     });
   }
 
-  fill() {
-    this.slider?.style.setProperty("--fill", Number(this.slider.value) / SLIDER_STEPS);
-  }
-
   show(value) {
-    if (document.activeElement !== this.entry || !this.row.classList.contains("refused")) this.entry.value = written(value, this.step);
+    if (document.activeElement !== this.entry || !this.root.classList.contains("refused")) this.entry.value = written(value, this.step);
     if (this.slider) {
       if (!this.slider.matches(":active")) this.slider.value = this.toSlider(value);
       this.slider.setAttribute("aria-valuetext", `${written(value, this.step)} ${unitOf(this.node)}`.trim());
     }
-    this.fill();
   }
 }
 
@@ -178,7 +175,7 @@ class SwitchControl extends Control {
 class ChoiceControl extends Control {
   constructor(context, path, node) {
     super(context, path, node);
-    const options = node.enum.map((value, i) => el("option", { value: i, text: String(value).replaceAll("_", " ") }));
+    const options = node.enum.map((value, i) => el("option", { value: i, text: humanise(value) }));
     this.select = el("select", { id: this.id, class: "select", on: { change: () => this.set(node.enum[Number(this.select.value)]) } }, options);
     this.reset.after(this.select);
   }
@@ -213,7 +210,7 @@ class VectorControl extends Control {
   }
 
   commit(index) {
-    const values = this.entries.map((entry) => Number(entry.value.trim().replace(",", ".") || NaN));
+    const values = this.entries.map((entry) => numberIn(entry.value));
     if (values.every(Number.isFinite)) this.set(values);
     else this.fail(`“${this.entries[index].value}” is not a number.`);
   }

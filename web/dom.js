@@ -63,6 +63,30 @@ export function iconButton(name, label, handler, properties = {}) {
   return el("button", { type: "button", class: "icon-button", "aria-label": label, title: label, on: { click: handler }, ...properties }, icon(name));
 }
 
+/** Rows of `[name, value]` as the terms and descriptions of a `dl`. */
+export function terms(rows) {
+  return rows.flatMap(([name, value]) => [el("dt", { text: name }), el("dd", { text: value })]);
+}
+
+/** A row of choices, `[value, text]` each, of which one holds: the group and its radio buttons. */
+export function segments(label, choices, choose) {
+  const name = freshId("choice");
+  const radios = choices.map(([value]) => el("input", { type: "radio", name, value, on: { change: () => choose(value) } }));
+  const labels = choices.map(([, text], i) => el("label", { class: "segment" }, radios[i], el("span", { text })));
+  return { radios, group: el("div", { class: "segments", role: "radiogroup", "aria-label": label }, labels) };
+}
+
+/** `double_horizon_map` as people read it. */
+export function humanise(name) {
+  const words = String(name).replaceAll("_", " ");
+  return words.charAt(0).toUpperCase() + words.slice(1);
+}
+
+/** The number in a text as people write it, or NaN. */
+export function numberIn(text) {
+  return Number(text.trim().replace(",", ".").replace("−", "-") || NaN);
+}
+
 let counter = 0;
 
 /** An id no other element of the page has. */

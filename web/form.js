@@ -1,14 +1,8 @@
 // Controls for a whole schema node: objects fold out, unions get a picker and the fields of the chosen member.
 
-import { el, freshId } from "./dom.js";
+import { el, humanise, segments } from "./dom.js";
 import { patchOf, valueAt } from "./document.js";
 import { controlFor } from "./controls.js";
-
-/** `double_horizon_map` as people read it. */
-export function humanise(name) {
-  const words = String(name).replaceAll("_", " ");
-  return words.charAt(0).toUpperCase() + words.slice(1);
-}
 
 /** Controls of every field of `node` under `path`; `refresh` brings them up to date with a document. */
 export class Form {
@@ -21,25 +15,17 @@ export class Form {
   /** Add the control (or the nested form) of one field. */
   add(path, node) {
     const sort = this.context.schema.sort(node);
-    if (sort === "union") this.parts.push(new UnionPart(this.context, path, node));
-    else if (sort === "object") this.addObject(path, node);
-    else {
-      const control = controlFor(this.context, path, node);
-      if (!control) return;
-      this.context.controls.set(path, control);
-      this.parts.push(control);
-      this.root.append(control.row);
-      return;
-    }
-    const part = this.parts[this.parts.length - 1];
-    if (part.root) this.root.append(part.root);
+    const part = sort === "union" ? new UnionPart(this.context, path, node) : sort === "object" ? this.inner(path, node) : controlFor(this.context, path, node);
+    if (!part) return;
+    this.parts.push(part);
+    this.root.append(part.root);
   }
 
-  addObject(path, node) {
-    const inner = new Form(this.context);
-    inner.addFields(path, node);
-    inner.root.prepend(el("h4", { text: node.title }));
-    this.parts.push(inner);
+  inner(path, node) {
+    const form = new Form(this.context);
+    form.addFields(path, node);
+    form.root.prepend(el("h4", { text: node.title }));
+    return form;
   }
 
   addFields(path, node) {
@@ -51,10 +37,7 @@ export class Form {
   }
 
   forget() {
-    for (const part of this.parts) {
-      if (part.forget) part.forget();
-      else this.context.controls.delete(part.path);
-    }
+    for (const part of this.parts) part.forget();
   }
 }
 
@@ -69,14 +52,9 @@ export class UnionPart {
   }
 
   picker(titled) {
-    const name = freshId("union");
-    this.radios = [...this.members].map(([kind]) => {
-      const radio = el("input", { type: "radio", name, value: kind, on: { change: () => this.choose(kind) } });
-      return [radio, el("label", { class: "segment" }, radio, el("span", { text: humanise(kind) }))];
-    });
-    const group = el("div", { class: "segments", role: "radiogroup", "aria-label": this.node.title }, this.radios.map(([, label]) => label));
-    const head = el("div", { class: "control-head" }, el("span", { class: "label", text: this.node.title }));
-    return el("div", { class: "control" }, titled ? head : null, group);
+    const { radios, group } = segments(this.node.title, [...this.members.keys()].map((kind) => [kind, humanise(kind)]), (kind) => this.choose(kind));
+    this.radios = radios;
+    return el("div", { class: "control" }, titled && el("span", { class: "label", text: this.node.title }), group);
   }
 
   /** A member that needs a file waits for it; the others start at their defaults. */
@@ -93,7 +71,7 @@ export class UnionPart {
   refresh(document) {
     const value = valueAt(document, this.path);
     if (value?.kind !== this.kind) this.rebuild(value?.kind);
-    for (const [radio] of this.radios ?? []) radio.checked = radio.value === this.kind;
+    for (const radio of this.radios ?? []) radio.checked = radio.value === this.kind;
     this.form?.refresh(document);
   }
 
@@ -101,9 +79,9 @@ export class UnionPart {
     this.form?.forget();
     this.kind = kind;
     const member = this.members.get(kind);
-    this.form = member ? new Form(this.context) : null;
-    this.form?.addFields(this.path, member);
-    this.holder.replaceChildren(...(this.form ? [this.form.root] : []));
+    this.form = new Form(this.context);
+    if (member) this.form.addFields(this.path, member);
+    this.holder.replaceChildren(this.form.root);
   }
 
   forget() {

@@ -1,8 +1,7 @@
 // Scenes and presets as a strip of real thumbnails, drawn by the server when the strip is first opened.
 
 import * as api from "./api.js";
-import { el, say } from "./dom.js";
-import { humanise } from "./form.js";
+import { el, humanise, say } from "./dom.js";
 import { same } from "./document.js";
 
 const WIDTH = 320;

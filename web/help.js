@@ -1,6 +1,6 @@
 // What can be done here, in one short dialog.
 
-import { el } from "./dom.js";
+import { el, terms } from "./dom.js";
 
 const GESTURES = [
   ["Turn", "drag, or the arrow keys"], ["Shift", "right drag, Shift and drag, or two fingers"], ["Closer, further", "wheel, pinch, or + and −"],
@@ -11,6 +11,6 @@ const GESTURES = [
 
 /** Fill the help dialog. */
 export function fill(root) {
-  root.replaceChildren(el("dl", { class: "gestures" }, GESTURES.flatMap(([what, how]) => [el("dt", { text: what }), el("dd", { text: how })])),
+  root.replaceChildren(el("dl", { class: "gestures" }, terms(GESTURES)),
     el("p", {}, "The same pictures come by HTTP: ", el("a", { href: "docs", text: "the doors of the server" }), "."));
 }

@@ -1,6 +1,6 @@
 // The corner: what this picture cost, from the pointer to the screen; green while within the budget.
 
-import { el, freshId } from "./dom.js";
+import { el, freshId, terms } from "./dom.js";
 
 const BUDGET_MS = 60;
 const EVERY_MS = 200;
@@ -58,6 +58,6 @@ export class Overlay {
       ["resolution", `${frame.width} × ${frame.height}`], ["samples", samples],
     ];
     if (frame.predicted_error !== null && frame.predicted_error !== undefined) rows.push(["expected error", `${(100 * frame.predicted_error).toFixed(1)} %`]);
-    this.table.replaceChildren(...rows.flatMap(([name, value]) => [el("dt", { text: name }), el("dd", { text: value })]));
+    this.table.replaceChildren(...terms(rows));
   }
 }

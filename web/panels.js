@@ -2,9 +2,9 @@
 
 import * as api from "./api.js";
 import { converted } from "./camera.js";
-import { el } from "./dom.js";
+import { el, humanise } from "./dom.js";
 import { valueAt } from "./document.js";
-import { Form, humanise, UnionPart } from "./form.js";
+import { Form, UnionPart } from "./form.js";
 import { range, Schema, stepOf, unitOf } from "./schema.js";
 import { SlotPicker } from "./techniques.js";
 
@@ -119,10 +119,10 @@ export class Panels {
   fail(field, sentence) {
     const control = this.controls.get(field);
     if (!control) return false;
-    for (let fold = control.row.closest("details"); fold; fold = fold.parentElement.closest("details")) fold.open = true;
+    for (let fold = control.root.closest("details"); fold; fold = fold.parentElement.closest("details")) fold.open = true;
     control.fail(sentence);
-    control.row.scrollIntoView({ block: "nearest" });
-    return control.row.checkVisibility?.() ?? true;
+    control.root.scrollIntoView({ block: "nearest" });
+    return control.root.checkVisibility?.() ?? true;
   }
 }
 

@@ -1,9 +1,7 @@
 // Click a point of the picture: what lies there, in numbers, with its horizon and the sun's course where they are known.
 
-import { el, iconButton, svg } from "./dom.js";
-import { humanise } from "./form.js";
-import { winds } from "./sun.js";
-import { radians } from "./vector.js";
+import { el, humanise, iconButton, svg, terms } from "./dom.js";
+import { onSky, pathOnSky, winds } from "./sun.js";
 
 const UNITS = { position: "m", elevation: "m", height: "m", distance: "m", slope: "°", aspect: "°", hours: "h", sun_hours: "h" };
 const NAMES = { position: "East, north, up", elevation: "Above the sea", sun_up: "Sees the sun", sun_hours: "Sun on this day",
@@ -36,6 +34,7 @@ export class Probe {
     this.mark = el("span", { class: "probe-mark", hidden: true, "aria-hidden": "true" });
     root.append(el("div", { class: "panel-head" }, el("h2", { text: "At this point" }), iconButton("close", "Close", () => this.close())), this.diagram, this.body);
     root.after(this.mark);
+    addEventListener("keydown", (event) => event.key === "Escape" && this.close());
     pointer.addEventListener("pick", (event) => this.ask(event.detail));
     store.addEventListener("change", () => this.root.hidden || this.follow());
     link.addEventListener("message", (event) => event.detail.type === "probe" && event.detail.id === this.id && this.show(event.detail));
@@ -64,7 +63,7 @@ export class Probe {
 
   show({ type, id, horizon, azimuths, ...facts }) {
     const rows = Object.entries(facts).filter(([, value]) => value !== null);
-    this.body.replaceChildren(...rows.flatMap(([key, value]) => [el("dt", { text: NAMES[key] ?? humanise(key) }), el("dd", { text: text(key, value) })]));
+    this.body.replaceChildren(...terms(rows.map(([key, value]) => [NAMES[key] ?? humanise(key), text(key, value)])));
     this.diagram.replaceChildren(...(Array.isArray(horizon) ? [this.draw(horizon, azimuths)] : []));
     this.root.hidden = this.mark.hidden = false;
     this.mark.style.left = `${this.place.left}px`;
@@ -78,22 +77,15 @@ export class Probe {
     this.root.style.top = `${Math.max(64, Math.min(floor - box.height - 8, this.place.top - 24))}px`;
   }
 
-  /** Place on the diagram of an elevation and an azimuth in degrees. */
-  at(elevation, azimuth) {
-    const r = (RING * (90 - Math.max(0, elevation))) / 90;
-    return [r * Math.sin(radians(azimuth)), -r * Math.cos(radians(azimuth))];
-  }
-
   /** The horizon round the point, zenith in the middle, with the sun and its course; degrees, evenly spaced without azimuths. */
   draw(horizon, azimuths) {
-    const line = (points) => points.map((point) => point.map((value) => value.toFixed(2)).join(" ")).join("L");
-    const sky = horizon.map((elevation, i) => this.at(elevation, azimuths?.[i] ?? (360 * i) / horizon.length));
+    const rim = horizon.map((elevation, i) => ({ elevation: Math.max(0, elevation), azimuth: azimuths?.[i] ?? (360 * i) / horizon.length }));
     const { placed, day } = this.sun();
-    const course = (day?.path ?? []).filter((point) => point.elevation >= 0).map((point) => this.at(point.elevation, point.azimuth));
-    const [x, y] = placed ? this.at(placed.elevation, placed.azimuth) : [];
+    const course = pathOnSky(day?.up ?? [], RING);
+    const [cx, cy] = placed ? onSky(placed, RING) : [];
     return svg("svg", { class: "horizon", viewBox: `${-SIZE / 2} ${-SIZE / 2} ${SIZE} ${SIZE}`, role: "img", "aria-label": "Horizon round this point and the sun's course, north up" },
-      svg("circle", { class: "horizon-ground", r: RING }), svg("path", { class: "horizon-sky", d: `M${line(sky)}Z` }), winds(RING),
-      course.length ? [svg("path", { class: "horizon-course", d: `M${line(course)}` })] : [],
-      placed && placed.elevation >= 0 ? [svg("circle", { class: "horizon-sun", r: 4, cx: x, cy: y })] : []);
+      svg("circle", { class: "horizon-ground", r: RING }), svg("path", { class: "horizon-sky", d: `${pathOnSky(rim, RING)}Z` }), winds(RING),
+      course ? svg("path", { class: "horizon-course", d: course }) : [],
+      placed?.elevation >= 0 ? svg("circle", { class: "horizon-sun", r: 4, cx, cy }) : []);
   }
 }

@@ -107,7 +107,7 @@ export function range(node) {
   };
 }
 
-const UNITS = { deg: "°", "m-1": "m⁻¹", ratio: "", count: "", date: "", "W m-2": "W m⁻²", voxel: "voxel" };
+const UNITS = { deg: "°", "m-1": "m⁻¹", ratio: "", count: "", date: "", "W m-2": "W m⁻²" };
 
 /** A unit as people read it. */
 export function unitOf(node) {

@@ -71,15 +71,16 @@ export class Share {
   }
 
   async copyLink() {
-    await this.copy(await this.link(), "The link to this picture is copied.");
+    await this.remember();
+    await this.copy(location.href, "The link to this picture is copied.", "copy the link from the address bar");
   }
 
-  async copy(text, words) {
+  async copy(text, words, otherwise = "select the text and copy it") {
     try {
       await navigator.clipboard.writeText(text);
       this.notices.toast(words);
     } catch {
-      this.notices.toast("The browser does not let the page copy: select the text and copy it.");
+      this.notices.toast(`The browser does not let the page copy: ${otherwise}.`);
     }
   }
 

@@ -37,6 +37,11 @@ export class Day {
     }));
   }
 
+  /** The part of the course above the horizon. */
+  get up() {
+    return this.path.filter((point) => point.elevation >= 0);
+  }
+
   /** Azimuth and elevation at a time of the day, between the server's points. */
   at(minutes) {
     const after = this.path.findIndex((point) => point.minutes >= minutes);
@@ -79,6 +84,18 @@ export function winds(radius) {
     svg("text", { class: "dome-letter", x, y, "text-anchor": "middle", "aria-hidden": "true", text }));
 }
 
+/** Where a direction in degrees lies on a picture of the sky: centre is the zenith, the ring of `radius` the horizon. */
+export function onSky({ azimuth, elevation }, radius) {
+  const r = (radius * (90 - elevation)) / 90;
+  return [r * Math.sin(radians(azimuth)), -r * Math.cos(radians(azimuth))];
+}
+
+/** Path through directions, in the same picture. */
+export function pathOnSky(directions, radius) {
+  const points = directions.map((at) => onSky(at, radius).map((value) => value.toFixed(2)).join(" "));
+  return points.length ? `M${points.join("L")}` : "";
+}
+
 /** A view of the sky from below turned north up: centre is the zenith, the ring the horizon. */
 export class Dome {
   constructor(root, onDrag, onGesture) {
@@ -87,22 +104,12 @@ export class Dome {
     this.ray = svg("path", { class: "dome-ray" });
     this.handle = svg("circle", { class: "dome-sun", r: 6, tabindex: 0, role: "slider", "aria-label": "Sun",
       "aria-valuemin": LOWEST, "aria-valuemax": 90 });
-    const rings = [30, 60].map((elevation) => svg("circle", { class: "dome-ring", r: this.radius(elevation) }));
+    const rings = [30, 60].map((elevation) => svg("circle", { class: "dome-ring", r: ((90 - elevation) / 90) * HORIZON }));
     this.svg = svg("svg", { class: "dome", viewBox: `${-SIZE / 2} ${-SIZE / 2} ${SIZE} ${SIZE}` },
       svg("circle", { class: "dome-disc", r: HORIZON }), rings, winds(HORIZON), this.path, this.ray, this.handle);
     root.append(this.svg);
     this.svg.addEventListener("pointerdown", (event) => this.down(event, onGesture));
     this.handle.addEventListener("keydown", (event) => this.key(event));
-  }
-
-  radius(elevation) {
-    return ((90 - elevation) / 90) * HORIZON;
-  }
-
-  point(sun) {
-    const r = this.radius(sun.elevation);
-    const a = radians(sun.azimuth);
-    return [r * Math.sin(a), -r * Math.cos(a)];
   }
 
   down(event, onGesture) {
@@ -112,7 +119,7 @@ export class Dome {
       const x = ((moved.clientX - box.left) / box.width - 0.5) * SIZE;
       const y = ((moved.clientY - box.top) / box.height - 0.5) * SIZE;
       const elevation = Math.max(LOWEST, 90 - (Math.hypot(x, y) / HORIZON) * 90);
-      this.onDrag({ azimuth: wrap((Math.atan2(x, -y) * 180) / Math.PI), elevation }, time);
+      this.onDrag({ azimuth: wrap(degrees(Math.atan2(x, -y))), elevation }, time);
     };
     event.preventDefault();
     this.handle.focus({ preventScroll: true });
@@ -133,15 +140,13 @@ export class Dome {
 
   show(sun, day) {
     this.sun = sun;
-    const shown = { ...sun, elevation: Math.max(LOWEST, sun.elevation) };
-    const [x, y] = this.point(shown);
+    const [x, y] = onSky({ ...sun, elevation: Math.max(LOWEST, sun.elevation) }, HORIZON);
     this.handle.setAttribute("cx", x);
     this.handle.setAttribute("cy", y);
     this.ray.setAttribute("d", `M0 0L${x.toFixed(2)} ${y.toFixed(2)}`);
     this.handle.classList.toggle("night", sun.elevation < 0);
     this.handle.setAttribute("aria-valuenow", sun.elevation.toFixed(1));
     this.handle.setAttribute("aria-valuetext", `azimuth ${sun.azimuth.toFixed(1)}°, elevation ${sun.elevation.toFixed(1)}°`);
-    const up = (day?.path ?? []).filter((point) => point.elevation >= 0).map((point) => this.point(point).map((v) => v.toFixed(2)).join(" "));
-    this.path.setAttribute("d", up.length ? `M${up.join("L")}` : "");
+    this.path.setAttribute("d", pathOnSky(day?.up ?? [], HORIZON));
   }
 }

@@ -27,7 +27,7 @@ export class SunBar {
       on: { input: () => this.tell(Number(this.range.value), performance.now()) } });
     this.rise = el("span", { class: "day-mark", hidden: true });
     this.set = el("span", { class: "day-mark", hidden: true });
-    this.play = iconButton("play", "Play the day", () => this.toggle(), { "aria-pressed": "false" });
+    this.play = iconButton("play", "Play the day", () => (this.playing ? this.stop() : this.start()), { "aria-pressed": "false" });
     this.date = el("input", { type: "date", class: "text", "aria-label": "Date", on: { change: () => this.date.value && this.moment({ date: this.date.value }) } });
     const details = freshId("place");
     this.placeText = el("span", {});
@@ -38,6 +38,11 @@ export class SunBar {
       el("div", { class: "time-row" }, this.play, this.clock, this.note, el("span", { class: "spacer" }), this.date, this.placeButton),
       el("div", { class: "day-track" }, this.range, this.rise, this.set));
     this.root.append(this.details);
+    this.root.addEventListener("keydown", (event) => {
+      if (event.key !== "Escape" || this.details.hidden) return;
+      this.unfold(false);
+      this.placeButton.focus();
+    });
   }
 
   unfold(open) {
@@ -83,11 +88,6 @@ export class SunBar {
     if (!free) this.remembered = document.sun;
     const fresh = free ? {} : schema.fresh(schema.members(schema.at("sun", document)).get("direction"));
     this.store.change({ sun: { ...fresh, ...rounded } }, "sun.dome", time);
-  }
-
-  toggle() {
-    if (this.playing) this.stop();
-    else this.start();
   }
 
   start() {
@@ -156,19 +156,18 @@ export class SunBar {
 
   marks() {
     for (const [mark, minutes, word] of [[this.rise, this.day?.sunrise, "↑"], [this.set, this.day?.sunset, "↓"]]) {
-      mark.hidden = minutes === null || minutes === undefined;
+      mark.hidden = !Number.isFinite(minutes);
       if (mark.hidden) continue;
       say(mark, `${word} ${clock(minutes).slice(0, 5)}`);
       mark.title = word === "↑" ? "Sunrise" : "Sunset";
       mark.style.setProperty("--at", minutes / LAST_MINUTE);
     }
-    const share = (minutes) => `${((100 * minutes) / LAST_MINUTE).toFixed(2)}%`;
     const { sunrise, sunset } = this.day ?? {};
-    this.range.classList.toggle("known", sunrise !== null && sunrise !== undefined);
-    if (sunrise === null || sunrise === undefined) return;
-    this.range.style.setProperty("--dawn", share(sunrise - TWILIGHT));
-    this.range.style.setProperty("--rise", share(sunrise + TWILIGHT));
-    this.range.style.setProperty("--fall", share(sunset - TWILIGHT));
-    this.range.style.setProperty("--dusk", share(sunset + TWILIGHT));
+    const known = Number.isFinite(sunrise);
+    this.range.classList.toggle("known", known);
+    if (!known) return;
+    for (const [name, minutes] of [["dawn", sunrise - TWILIGHT], ["rise", sunrise + TWILIGHT], ["fall", sunset - TWILIGHT], ["dusk", sunset + TWILIGHT]]) {
+      this.range.style.setProperty(`--${name}`, `${((100 * minutes) / LAST_MINUTE).toFixed(2)}%`);
+    }
   }
 }

@@ -1,9 +1,8 @@
 // Drop a file anywhere: it is checked by the server and shown with its size before it replaces anything.
 
 import * as api from "./api.js";
-import { el } from "./dom.js";
+import { el, humanise, numberIn, terms } from "./dom.js";
 import { bytes } from "./overlay.js";
-import { humanise } from "./form.js";
 import { unitOf } from "./schema.js";
 
 const MENDED = { "holes = fill": { words: "Fill the holes from their rims", reading: { holes: "fill" } } };
@@ -98,7 +97,7 @@ export class Upload {
       on: { click: () => this.apply(place, asset, reading, asked) } }));
     const none = places.length ? null : el("p", { text: `This scene has no place for a file of this kind (${kind}).` });
     this.show(file.name,
-      el("dl", { class: "costs" }, rows.flatMap(([name, value]) => [el("dt", { text: humanise(name) }), el("dd", { text: said(value) })])),
+      el("dl", { class: "costs" }, terms(rows.map(([name, value]) => [humanise(name), said(value)]))),
       ...asked.rows, ...use, ...(none ? [none] : []));
   }
 
@@ -131,7 +130,7 @@ class Reading {
   values() {
     const found = {};
     for (const { name, field, entries } of this.fields) {
-      const numbers = entries.map((entry) => Number(entry.value.trim().replace(",", ".").replace("−", "-") || NaN));
+      const numbers = entries.map((entry) => numberIn(entry.value));
       if (!numbers.every(Number.isFinite)) {
         this.error.textContent = `${field.title}: the file does not say it, so it must be entered.`;
         this.error.hidden = false;

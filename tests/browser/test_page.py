@@ -196,6 +196,14 @@ def test_a_link_carries_the_whole_state(page: Page, open_page: Open) -> None:
     assert house.state_of(other) == house.state_of(page)
 
 
+def test_a_link_of_version_one_keeps_its_brightness(open_page: Open, document: dict[str, Any]) -> None:
+    page = open_page({**document, "version": 1, "view": {"exposure": -7.4}})
+    view = house.state_of(page)["view"]
+    assert view["auto_exposure"] is False
+    assert view["exposure"] == pytest.approx(-7.4 + np.log2(1000 / np.pi))
+    assert not page.get_by_role("switch", name="Follow the light").is_checked()
+
+
 def test_a_damaged_link_is_told_and_the_scene_still_comes(open_page: Open, document: dict[str, Any]) -> None:
     page = open_page({**document, "camera": {**document["camera"], "distance": -4}}, rest=False)
     house.until(page, "document.querySelector('.toast.refusal') !== null")

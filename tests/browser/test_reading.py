@@ -46,6 +46,10 @@ def test_a_click_tells_what_lies_there_and_follows_the_sun(open_page: Open, docu
     page.locator("#surface").focus()
     page.keyboard.press("ArrowRight")
     house.until(page, "document.querySelector('#probe').hidden")
+    page.keyboard.press("Enter")
+    house.until(page, "!document.querySelector('#probe').hidden")
+    page.keyboard.press("Escape")
+    assert page.locator("#probe").is_hidden()
 
 
 def answer_reference(page: Page) -> list[dict[str, Any]]:

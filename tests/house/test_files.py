@@ -14,6 +14,8 @@ TOP = {".ci", ".gitignore", "ARCHITECTURE.md", "CHANGELOG.md", "CITATION.cff", "
        "docs", "pyproject.toml", "renderer", "server", "shaders", "tests", "web"}
 MOST_LINES = 300
 MOST_FUNCTION_LINES = 60
+MOST_PAGE_BYTES = 150_000
+"""Of the page's own script and style, as they lie here: they are sent as they are."""
 
 
 def tracked() -> list[Path]:
@@ -34,6 +36,10 @@ TEXTS = [path for path in tracked() if path.suffix in {".py", ".js", ".glsl", ".
 
 def test_the_top_level_is_fixed() -> None:
     assert {path.relative_to(ROOT).parts[0] for path in tracked()} - TOP == set()
+
+
+def test_the_page_is_light() -> None:
+    assert sum(path.stat().st_size for path in having(".js", ".css")) <= MOST_PAGE_BYTES
 
 
 def test_files_are_short() -> None:
