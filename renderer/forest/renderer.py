@@ -162,9 +162,8 @@ class ForestRenderer:
                 slot,
                 technique,
                 angles(state.sun),
-                state.camera,
+                tuple(sun_pass.uniforms.items()),
                 state.ground.map_seed,
-                size[0] / size[1],
                 baked["terrain"].key,
                 baked["pattern"].key,
             )
@@ -239,7 +238,7 @@ class ForestRenderer:
     def _draw_pass(
         self, slot: str, sun_pass: Any, values: dict[str, Any], textures: dict[str, AnyTexture], local: bool
     ) -> Target:
-        target = Target(self._gl, sun_pass.resolution, sun_pass.resolution, components=1)
+        target = Target(self._gl, sun_pass.resolution, sun_pass.resolution * sun_pass.layers, components=1)
         source = pass_source(slot, sun_pass.name, sun_pass.glsl, sun_pass.declarations, local)
         return self._draw_into(target, source, values | dict(sun_pass.uniforms), textures)
 

@@ -22,8 +22,9 @@ class SunPass:
         name: sampler it fills, as named in the technique's `textures`.
         glsl: file with `vec4 <slot>_<name>_texel(vec2 pixel)`, relative to the shader root.
         declarations: of the uniforms below.
-        resolution: side of the square target in texels.
-        uniforms: what both the pass and the frame read.
+        resolution: width of the target in texels.
+        uniforms: what both the pass and the frame read; the pass is drawn again when one of them changes.
+        layers: squares of that side which the target holds, one above the other.
     """
 
     name: str
@@ -31,6 +32,7 @@ class SunPass:
     declarations: tuple[str, ...]
     resolution: int
     uniforms: Mapping[str, Any]
+    layers: int = 1
 
 
 class ForestTechnique(Technique):
