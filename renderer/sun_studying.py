@@ -170,7 +170,9 @@ def _computed(workers: Workers, cache: Cache, bakes: list[Bake], on_progress: Re
     def tell(number: int, progress: Progress) -> None:
         shares[number] = max(shares[number], progress.fraction)
         share = sum(shares) / len(bakes)
-        left = (time.monotonic() - started) * (1 - share) / max(share - had, 1e-3)
+        spent, done = time.monotonic() - started, share - had
+        # At first the announced time is the better guess; then the pace so far.
+        left = spent * (1 - share) / done if done > 0.05 else sum(bake.seconds for bake in bakes) * (1 - share)
         if on_progress is not None:
             on_progress(Progress("sun study", share, f"{progress.words}, {bakes[number].name[11:]}", left))
 

@@ -7,14 +7,14 @@ import sys
 from collections.abc import Sequence
 
 from renderer.core.errors import InputError, InvalidDocument, UmbrageError
-from server import cli_draw, cli_measure, cli_serve, cli_study
+from server import cli_draw, cli_measure, cli_serve, cli_study, cli_sunlight
 
 FAILED, REFUSED, INTERRUPTED = 1, 2, 130
 """Exit codes: something of ours or of the machine, something that was asked wrongly, Ctrl-C."""
 
 
 def parser(arguments: Sequence[str]) -> argparse.ArgumentParser:
-    """The parser of every command; for a quick start, `measure` declares its options only where it is asked for."""
+    """The parser of every command; for a quick start, two declare their many options only where they are asked for."""
     top = argparse.ArgumentParser(
         prog="umbrage", description="Relights natural scenes in real time, and says how right each picture is."
     )
@@ -22,6 +22,7 @@ def parser(arguments: Sequence[str]) -> argparse.ArgumentParser:
     cli_serve.add(commands)
     cli_draw.add(commands)
     cli_measure.add(commands, "measure" in arguments)
+    cli_sunlight.add(commands, "sunstudy" in arguments)
     cli_study.add(commands)
     return top
 

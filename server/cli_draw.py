@@ -30,7 +30,7 @@ def add(commands: Any) -> None:
     describing.add_argument("--json", action="store_true", help="the whole description, with the schema")
     describing.set_defaults(run=describe)
     rendering = commands.add_parser("render", help="draw a picture")
-    _state_options(rendering)
+    state_options(rendering)
     rendering.add_argument("--size", metavar="WxH", default="512x512", help="pixels (default %(default)s)")
     rendering.add_argument(
         "-o",
@@ -42,12 +42,13 @@ def add(commands: Any) -> None:
     )
     rendering.set_defaults(run=render)
     baking = commands.add_parser("bake", help="precompute what a state needs")
-    _state_options(baking)
+    state_options(baking)
     baking.set_defaults(run=bake)
 
 
-def _state_options(command: argparse.ArgumentParser) -> None:
-    command.add_argument("scene", metavar="SCENE")
+def state_options(command: argparse.ArgumentParser, required: bool = True) -> None:
+    """Declare what names a state; `required` where the command does nothing without one."""
+    command.add_argument("scene", metavar="SCENE", nargs=None if required else "?")
     command.add_argument("--preset", metavar="NAME")
     command.add_argument("--state", metavar="FILE", help="a state document (JSON); - for standard input")
     command.add_argument(
@@ -202,13 +203,13 @@ def render(given: argparse.Namespace) -> int:
         finally:
             bar.close()
         data = picture.encode(FORMATS[output.suffix.lower()])
-    _write(output, data)
+    write(output, data)
     print(f"{output}: {width} x {height}, {picture.samples} samples a pixel, {picture.render_ms:.0f} ms")
     return 0
 
 
-def _write(path: Path, data: bytes) -> None:
-    """Replace a file at once: a reader never sees half a picture."""
+def write(path: Path, data: bytes) -> None:
+    """Replace a file at once: a reader never sees half of it."""
     handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
     try:
         with os.fdopen(handle, "wb") as file:
