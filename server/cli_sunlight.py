@@ -59,8 +59,6 @@ def run(given: argparse.Namespace) -> int:
     files = {name: _existing(name, getattr(given, name)) for name in FILES if getattr(given, name) is not None}
     if files and given.scene:
         raise InputError("--terrain", "is given beside a scene, which has its own", "one of the two")
-    if "canopy" in files and "terrain" not in files:
-        raise InputError("--canopy", "stands on no terrain", "with --terrain")
     period = {}
     for name, field in given.declared.items():
         text = getattr(given, f"argument_{name}")

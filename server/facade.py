@@ -103,6 +103,17 @@ class Measurement(Protocol):
     def meta(self) -> Mapping[str, Any]: ...
 
 
+class SunStudy(Protocol):
+    """Maps of the sun over a land, by name, and their ranges."""
+
+    @property
+    def arrays(self) -> Mapping[str, np.ndarray]: ...
+    @property
+    def numbers(self) -> Mapping[str, Any]: ...
+    def geotiff(self, name: str, /) -> bytes: ...
+    def picture(self, name: str, /) -> bytes: ...
+
+
 class RenderSession(Protocol):
     """One per process."""
 
@@ -130,5 +141,12 @@ class RenderSession(Protocol):
     def measure(
         self, quantity: str, arguments: Mapping[str, Any], files: Mapping[str, Path] | None = None
     ) -> Measurement: ...
+    def sunlight(
+        self,
+        period: Mapping[str, Any],
+        state: Any = None,
+        files: Mapping[str, Path] | None = None,
+        on_progress: OnProgress | None = None,
+    ) -> SunStudy: ...
     def view(self) -> View: ...
     def close(self) -> None: ...

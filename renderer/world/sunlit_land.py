@@ -14,6 +14,8 @@ from renderer.world.sunlight import COVERED
 from renderer.world.terrain import Terrain, default_terrain, load_terrain
 from renderer.world.terrain_crs import north_of
 
+FILES = ("terrain", "canopy")
+
 
 @dataclass(frozen=True)
 class Land:
@@ -59,8 +61,14 @@ def land_of_files(files: Mapping[str, Path]) -> Land:
     """The land of an elevation model, `terrain`, and of a raster of canopy heights on the same nodes, `canopy`.
 
     Raises:
+        InputError: a file of another name, or a canopy on no terrain.
         AssetError, LimitError: what is wrong with a file, in words.
     """
+    for name in files:
+        if name not in FILES:
+            raise InputError(name, "is no file of a land", " and ".join(FILES))
+    if "canopy" in files and "terrain" not in files:
+        raise InputError("canopy", "stands on no terrain", "the terrain that it belongs to")
     try:
         terrain = load_terrain(files["terrain"]) if "terrain" in files else default_terrain()
     except InputError as failure:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import json
+from collections.abc import Mapping
 from pathlib import Path as FilePath
 from typing import Annotated, Any
 
@@ -78,13 +79,23 @@ def _run(hub: Hub, quantity: str, arguments: dict[str, Any]) -> facade.Measureme
         raise Missing("quantity", "there is no such quantity", ", ".join(known))
     names = {entry["name"] for entry in known[quantity]["files"]}
     given = {name: value for name, value in arguments.items() if name in names and isinstance(value, str)}
+    files = asset_files(hub, given)
+    plain = {name: value for name, value in arguments.items() if name not in given}
+    return hub.session.measure(quantity, plain, files)
+
+
+def asset_files(hub: Hub, given: Mapping[str, str]) -> dict[str, FilePath]:
+    """Paths of uploaded files, by the names under which they are used.
+
+    Raises:
+        InputError: what is given is no upload, or it has expired.
+    """
     files: dict[str, FilePath] = {}
     for name, value in given.items():
         if not value.startswith(ASSET):
             raise InputError(name, "is a file: upload it first", "asset:HASH, from POST /api/assets")
         files[name] = hub.session.assets.get(value.removeprefix(ASSET)).path
-    plain = {name: value for name, value in arguments.items() if name not in given}
-    return hub.session.measure(quantity, plain, files)
+    return files
 
 
 def _npz(found: facade.Measurement) -> bytes:

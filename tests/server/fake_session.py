@@ -242,6 +242,26 @@ class FakeSession:
         picture = self.render(state, width, height, on_progress)
         return SimpleNamespace(files={"reference.png": picture.encode("png")}, numbers={"relative_rmse": 0.1})
 
+    def sunlight(
+        self,
+        period: Mapping[str, Any],
+        state: Any = None,
+        files: Mapping[str, Path] | None = None,
+        on_progress: Any = None,
+    ) -> Any:
+        if set(period) - {"start"}:
+            raise InputError(next(iter(set(period) - {"start"})), "is no argument", "start")
+        while not self.bake_gate.wait(0.01):
+            on_progress(SimpleNamespace(name="sun study", fraction=0.5, words="following the sun", seconds_left=1.0))
+        hours = np.full((2, 3), files["terrain"].stat().st_size if files else 12.0, np.float32)
+        maps = {"hours": hours, "insolation": hours / 2}
+        return SimpleNamespace(
+            arrays=maps,
+            numbers={"hours": {"mean": float(hours.mean())}},
+            geotiff=lambda name: b"II*\0" + name.encode(),
+            picture=lambda name: b"\x89PNG" + name.encode(),
+        )
+
     def add_asset(self, path: Path, filename: str, reading: Mapping[str, Any] | None = None) -> dict[str, Any]:
         data = path.read_bytes()
         if not data.startswith(b"good"):
@@ -249,8 +269,14 @@ class FakeSession:
         kept = self.folder / "kept"
         kept.write_bytes(data)
         self.assets.kept["abc"] = SimpleNamespace(path=kept, kind="terrain", name=filename, expires=1.0)
-        return {"asset": "asset:abc", "kind": "terrain", "name": filename, "reading": dict(reading or {}),
-                "preview": {}, "expires": 1.0}
+        return {
+            "asset": "asset:abc",
+            "kind": "terrain",
+            "name": filename,
+            "reading": dict(reading or {}),
+            "preview": {},
+            "expires": 1.0,
+        }
 
     def quantities(self) -> list[dict[str, Any]]:
         return [

@@ -62,7 +62,7 @@ def test_files_that_do_not_fit_are_refused(land: Path, tmp_path: Path, capsys: p
     out = ["-o", str(tmp_path / "out")]
     for options, words in (
         (["--terrain", "absent.tif"], "--terrain: there is no file absent.tif"),
-        (["--canopy", str(land)], "--canopy: stands on no terrain"),
+        (["--canopy", str(land)], "canopy: stands on no terrain"),
         (["forest", "--terrain", str(land)], "--terrain: is given beside a scene"),
         (["--terrain", str(land), "-o", str(land)], "is no folder"),
     ):

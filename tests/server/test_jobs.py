@@ -1,11 +1,13 @@
 from __future__ import annotations
 
 import asyncio
+import io
 import threading
 import time
 from types import SimpleNamespace
 from typing import Any
 
+import numpy as np
 import pytest
 from starlette.testclient import TestClient
 
@@ -63,6 +65,37 @@ def test_a_failed_job_names_the_field(client: TestClient) -> None:
 def test_a_wrong_job_names_its_field(client: TestClient, change: dict[str, Any], field: str) -> None:
     answer = client.post("/api/jobs", json={"kind": "reference", "scene": "fake", **change})
     assert (answer.status_code, answer.json()["errors"][0]["field"]) == (422, field)
+
+
+def test_a_sun_study_leaves_maps(client: TestClient) -> None:
+    asset = client.post("/api/assets", files={"file": ("a.npz", b"good land")}).json()["asset"]
+    for body, hours in (({"scene": "fake"}, 12.0), ({"files": {"terrain": asset}}, 9.0)):
+        number = client.post("/api/jobs", json={"kind": "sunlight", "period": {"start": "2024-01-01"}, **body}).json()
+        result = followed(client, number["id"])["result"]
+        assert result["hours"]["mean"] == hours
+        kinds = {name: client.get(url).headers["content-type"] for name, url in result["files"].items()}
+        assert kinds == {
+            f"{name}.{ending}": media
+            for name in ("hours", "insolation")
+            for ending, media in (("tif", "image/tiff"), ("png", "image/png"), ("npy", "application/x-npy"))
+        }
+        array = np.load(io.BytesIO(client.get(result["files"]["insolation.npy"]).content))
+        assert np.all(array == hours / 2)
+    wrong = client.post("/api/jobs", json={"kind": "sunlight", "scene": "fake", "period": {"begin": 1}}).json()["id"]
+    assert followed(client, wrong)["errors"][0]["field"] == "begin"
+    both = client.post("/api/jobs", json={"kind": "sunlight", "scene": "fake", "files": {"terrain": asset}})
+    assert (both.status_code, both.json()["errors"][0]["field"]) == (422, "files")
+    absent = client.post("/api/jobs", json={"kind": "sunlight", "files": {"terrain": "hill.tif"}}).json()["id"]
+    assert followed(client, absent)["errors"][0]["field"] == "terrain"
+
+
+def test_a_sun_study_is_followed_and_cancelled(client: TestClient, session: FakeSession) -> None:
+    session.bake_gate.clear()
+    number = client.post("/api/jobs", json={"kind": "sunlight", "scene": "fake"}).json()["id"]
+    while client.get(f"/api/jobs/{number}").json()["fraction"] != 0.5:
+        time.sleep(0.01)
+    client.delete(f"/api/jobs/{number}")
+    assert followed(client, number)["status"] == "cancelled"
 
 
 def slow(job: Job) -> Result:

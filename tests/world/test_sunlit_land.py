@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from renderer.core.errors import AssetError
+from renderer.core.errors import AssetError, InputError
 from renderer.world.sun_course import SunlightPeriod
 from renderer.world.sunlit_land import land_of, land_of_files, place_of
 from renderer.world.terrain import Terrain
@@ -36,6 +36,10 @@ def test_files_are_named_when_they_are_wrong(tmp_path: Path) -> None:
     with pytest.raises(AssetError) as refused:
         land_of_files({"terrain": ground, "canopy": canopy})
     assert refused.value.field == "canopy"
+    for wrong, field in (({"canopy": canopy}, "canopy"), ({"terrain": ground, "mesh": ground}, "mesh")):
+        with pytest.raises(InputError) as named:
+            land_of_files(wrong)
+        assert named.value.field == field
     ground.write_bytes(b"no terrain")
     with pytest.raises(AssetError) as refused:
         land_of_files({"terrain": ground})
