@@ -114,7 +114,9 @@ class Study:
                     for light in techniques(self.plan.scene, "light")
                 ]
                 chosen += [c for c in exact if self._differs(Case(preset, sun, c, light_of(sun)))]
-            for combination in sorted(chosen, key=lambda c: c.get("light", "")):
+            lights = {c["light"] for c in chosen if "light" in c}
+            truths = {light: self._bake(Case(preset, sun, {"light": light}, light_of(sun)), "shadow") for light in lights}
+            for combination in sorted(chosen, key=lambda c: truths.get(c.get("light", ""), "")):
                 yield Case(preset, sun, combination, light_of(sun))
 
     def draw(self, case: Case) -> Drawn:

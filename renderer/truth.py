@@ -128,8 +128,9 @@ def truth_of(arrays: Arrays) -> Truth:
 
 
 def _forest_options(state: Any, judge: Judge) -> dict[str, Any]:
-    """A shadow is judged under the picture's own light; everything else by the voxels' normals."""
-    return {"light": "gouraud" if judge == "shadow" and state.light.kind == "gouraud" else "lambert"}
+    """A shadow is judged under the picture's own light where the reference has it; everything else by the leaves."""
+    own = judge == "shadow" and state.light.kind in ("lambert", "gouraud")
+    return {"light": state.light.kind if own else "leaf"}
 
 
 def _forest(

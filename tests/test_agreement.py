@@ -31,7 +31,7 @@ def test_the_unshadowed_forest_is_the_references(spoiled: dict[str, Any], agrees
     with Session() as session:
         state = session.state("forest", "forest_edge", sets)
         bake = truth_bake(state, SIDE, SIDE)
-        arguments = {**bake.arguments, "positions": POSITIONS, "options": {"light": "lambert", **UNSHADOWED}}
+        arguments = {**bake.arguments, "positions": POSITIONS, "options": {"light": "leaf", **UNSHADOWED}}
         found = truth_of(session.compute(replace(bake, arguments=arguments)))
         drawn = session.state("forest", "forest_edge", {**sets, **spoiled})
         picture = session.draw(drawn, SIDE, SIDE, POSITIONS * PASSES, lambda n: offset(n % POSITIONS))

@@ -119,7 +119,8 @@ def bake_pattern(
 
     Returns:
         `colour` uint8 [k, j, i, 4]: linear albedo times opacity, and the opacity over one voxel's length;
-        `normal` uint8 [.., 4]: unit normal in world axes (0.5 n + 0.5), and the share of the sky's light;
+        `normal` uint8 [.., 4]: mean of the normals in world axes (0.5 n + 0.5), as short as they disagree, and the
+        share of the sky's light;
         `anchor` uint8 [.., 4]: offset east and north to the tree's foot, 128 + 16 a metre; safe distance in voxels
         (Chebyshev distance to matter); the tree's rank (`planting.ranked`), plus WOOD in wood; the same with `_1` to `_5` at coarser levels (opacity over the
         level's own voxel length); `tile` uint8 [is_down, variant, key, 2]: see `tiles`; `trees` float32 [n, 6]: foot
@@ -154,10 +155,7 @@ def _level(atlas: Atlas, progress: Callable[[float, str], None]) -> dict[str, np
     # What is stored is what counts: air is where the byte says so.
     full = encoded[..., 3] > 0
     normal = np.zeros((*opacity.shape, 3), np.float32)
-    normal[..., 2] = 1
-    length = np.linalg.norm(atlas.normal, axis=-1)
-    sound = full & (length > 1e-6)
-    normal[sound] = atlas.normal[sound] / length[sound][:, None]
+    normal[full] = (atlas.normal / area)[full]
     atlas.anchor[..., 3] |= np.where(full & (atlas.sums[..., 3] > 0.5 * atlas.area), WOOD, 0).astype(np.uint8)
     extend(full, normal, atlas.anchor, AXES)
     progress(0.6, "measuring safe distances")

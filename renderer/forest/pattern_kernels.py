@@ -89,7 +89,7 @@ def _borrow(full, normal, anchor, axes, k, j, i, radius):
     """Take normal, foot and rank of the matter within `radius` voxels of voxel (k, j, i): whether there is any."""
     layers, rows, columns = full.shape
     nearest, rank = 1000000, 0
-    x, y, z, east, north = 0.0, 0.0, 0.0, 0.0, 0.0
+    x, y, z, weight, east, north = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     for dk in range(max(-radius, -k), min(radius, layers - 1 - k) + 1):
         for dj in range(-radius, radius + 1):
             for di in range(-radius, radius + 1):
@@ -98,6 +98,7 @@ def _borrow(full, normal, anchor, axes, k, j, i, radius):
                 if abs(di + dj) > 2 or not full[k + dk, row, column]:
                     continue
                 squared = dk * dk + dj * dj + di * di
+                weight += 1.0 / squared
                 x += normal[k + dk, row, column, 0] / squared
                 y += normal[k + dk, row, column, 1] / squared
                 z += normal[k + dk, row, column, 2] / squared
@@ -108,8 +109,7 @@ def _borrow(full, normal, anchor, axes, k, j, i, radius):
                     north = (di * axes[0, 1] + dj * axes[1, 1]) * ANCHOR_STEPS + anchor[k + dk, row, column, 1]
     if nearest == 1000000:
         return False
-    length = max(np.sqrt(x * x + y * y + z * z), 1e-6)
-    normal[k, j, i, 0], normal[k, j, i, 1], normal[k, j, i, 2] = x / length, y / length, z / length
+    normal[k, j, i, 0], normal[k, j, i, 1], normal[k, j, i, 2] = x / weight, y / weight, z / weight
     anchor[k, j, i, 0] = np.uint8(min(max(np.round(east), 0.0), 255.0))
     anchor[k, j, i, 1] = np.uint8(min(max(np.round(north), 0.0), 255.0))
     anchor[k, j, i, 3] = np.uint8(rank)

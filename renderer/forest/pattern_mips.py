@@ -36,12 +36,12 @@ def coarser(colour: np.ndarray, normal: np.ndarray, anchor: np.ndarray) -> tuple
 
     Args:
         colour: float32 (K, J, I, 4), associated albedo and the opacity over one voxel's length, in [0, 1].
-        normal: float32 (K, J, I, 4), unit normals and the sky's share. anchor: uint8 (K, J, I, 4).
+        normal: float32 (K, J, I, 4), mean normals and the sky's share. anchor: uint8 (K, J, I, 4).
 
     Returns:
-        The same at half the resolution. Opacity is meant for twice the length. Normals are averaged by opacity and
-        made unit; feet and the wood mark are those of the densest child, offsets unchanged; the safe distance is the
-        children's least, halved.
+        The same at half the resolution. Opacity is meant for twice the length. Normals are averaged by opacity, and
+        shorten where they disagree; feet and the wood mark are those of the densest child, offsets unchanged; the safe
+        distance is the children's least, halved.
 
     Source: formulas b3 (directional opacity), averaged over the three axes.
     """
@@ -50,11 +50,8 @@ def coarser(colour: np.ndarray, normal: np.ndarray, anchor: np.ndarray) -> tuple
     ]
     merged = (levels[0] + levels[1] + levels[2]) / np.float32(3)
     weight = colour[..., 3:] + np.float32(1e-4)
-    direction = _average(normal[..., :3] * weight, (0, 1, 2))
-    length = np.linalg.norm(direction, axis=-1, keepdims=True)
-    direction = np.where(length > 1e-7, direction / np.maximum(length, 1e-7), np.array([0, 0, 1], np.float32))
-    ambient = _average(normal[..., 3:] * weight, (0, 1, 2)) / _average(weight, (0, 1, 2))
-    return merged, np.concatenate([direction, ambient], axis=-1).astype(np.float32), _densest(anchor, colour[..., 3])
+    mean = _average(normal * weight, (0, 1, 2)) / _average(weight, (0, 1, 2))
+    return merged, mean.astype(np.float32), _densest(anchor, colour[..., 3])
 
 
 def _densest(anchor: np.ndarray, opacity: np.ndarray) -> np.ndarray:
@@ -67,7 +64,7 @@ def _densest(anchor: np.ndarray, opacity: np.ndarray) -> np.ndarray:
 
 
 def decode(pattern: dict[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
-    """Colour and normal arrays of a pattern as float32: colours in [0, 1], normals in [-1, 1], the sky's share in
+    """Colour and normal arrays of a pattern as float32: colours in [0, 1], mean normals in [-1, 1], the sky's share in
     [0, 1]."""
     colour = pattern["colour"].astype(np.float32) / np.float32(255)
     normal = pattern["normal"].astype(np.float32) / np.float32(255)
@@ -81,7 +78,7 @@ def encode_colour(colour: np.ndarray) -> np.ndarray:
 
 
 def encode_normal(normal: np.ndarray) -> np.ndarray:
-    """Unit normals and the sky's share in bytes."""
+    """Mean normals and the sky's share in bytes."""
     shifted = np.concatenate([normal[..., :3] * 0.5 + 0.5, normal[..., 3:]], axis=-1)
     return np.round(np.clip(shifted, 0, 1) * 255).astype(np.uint8)
 

@@ -40,7 +40,7 @@ SLOTS = (
         "light",
         "Light",
         "How a leaf answers the sun.",
-        "float light_factor(vec3 voxel_normal, vec3 ground_normal) // cosine-like, >= 0",
+        "vec3 light_reflected(Matter matter, vec3 to_eye) // 1/sr: radiance per irradiance normal to the beam",
         DEFAULTS["light"],
     ),
     Slot(

@@ -34,7 +34,7 @@ uniform sampler3D pattern_voxels;
 uniform sampler3D pattern_normal;
 uniform sampler2D tiles;
 uniform sampler2D scout;          // m: where the rays of a block of pixels begin, row 0 the top
-uniform sampler2D traced_place;   // m along the ray, and normalised height: where a sample looks at the light
+uniform sampler2D traced_place;   // m along the ray, and normalised height, raised in wood: where light is looked at
 uniform sampler2D traced_voxel;   // what stands there, and the ray's opacity
 uniform vec2 terrain_range;       // m
 uniform float terrain_cell;       // m
@@ -79,7 +79,8 @@ void main() {
     vec4 jitter = pixel_ray(corner, origin, direction);
     float start = texelFetch(scout, ivec2(corner + 0.5) / %d, 0).r;
     Event event = forest_trace(origin, direction, start, jitter);
-    place_found = vec2(dot(event.place.xyz - origin, direction), event.place.w);
+    float wood = wood_in(event.voxel) && event.place.w >= 0.0 ? WOOD : 0.0;
+    place_found = vec2(dot(event.place.xyz - origin, direction), event.place.w + wood);
     voxel_found = vec4(event.voxel.xyz / 65535.0, event.opacity);
 }"""
 
@@ -95,7 +96,8 @@ void main() {
     vec4 place = vec4(origin + reached * found.x * direction, found.y);
     // A ray that reached nothing has no place: the faded share comes off the opacity of the others, right in the mean.
     float faded = reached * (1.0 - land_kept(place.xy));
-    radiance = vec4((reached - faded) * outgoing(place, vec4(voxel.xyz * 65535.0, 0.0), level), voxel.w - faded);
+    vec3 light = outgoing(place, vec4(voxel.xyz * 65535.0, 0.0), level, -direction);
+    radiance = vec4((reached - faded) * light, voxel.w - faded);
 #if BACKGROUND_SKY == 1
     radiance.rgb += (1.0 - radiance.a) * (sky_radiance(direction) + sky_sun_disc(direction));
     radiance.a = 1.0;
@@ -133,8 +135,8 @@ def shade_source(state: ForestState) -> Source:
     slots = tuple(slot for slot in state.techniques() if slot != "geometry")
     body = SHADE_BODY
     sky = state.view.background == "sky"
-    after = ("forest/fading.glsl", "forest/shade.glsl")
-    return _composed(_chosen(state, slots), (), after, body, sky, state.cover.local_heights)
+    before, after = ("forest/matter.glsl",), ("forest/fading.glsl", "forest/shade.glsl")
+    return _composed(_chosen(state, slots), before, after, body, sky, state.cover.local_heights)
 
 
 def _chosen(state: ForestState, slots: tuple[str, ...]) -> Chosen:

@@ -19,7 +19,7 @@ DEFAULTS = {
     "geometry": "ray_march",
     "shadow": "double_horizon_map",
     "height_shading": "empirical",
-    "light": "lambert",
+    "light": "leaf",
     "sky": "ambient",
     "filter": "mipmap",
 }
@@ -183,6 +183,22 @@ class Ground(Model):
     albedo: Colour = param((0.10, 0.10, 0.045), label="Ground albedo", help="Reflectance of the soil and the grass.")
     tint_strength: float = param(
         0.35, label="Tree tint", help="How much one tree's colour differs from the next.", unit="ratio", ge=0, le=0.9
+    )
+    translucency: float = param(
+        0.7,
+        label="Translucent leaves",
+        help="What a leaf lets through in green, as a share of what it reflects; wood lets nothing through.",
+        unit="ratio",
+        ge=0,
+        le=1.5,
+        step=0.05,
+        source="Féret et al. 2017, PROSPECT-D, at oak, spruce and birch leaves",
+    )
+    glow: Colour = param(
+        (0.75, 1.0, 0.05),
+        label="Colour of the light through leaves",
+        help="As shares of the leaves' own colour: pigments take blue first.",
+        source="Féret et al. 2017, PROSPECT-D",
     )
     patches: float = param(
         0.2, label="Ground patches", help="How much the ground's brightness varies.", unit="ratio", ge=0, le=0.9

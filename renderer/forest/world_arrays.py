@@ -54,6 +54,7 @@ def world_arrays(state: ForestState, baked: Mapping[str, Arrays]) -> dict[str, A
         "tint_strength": state.ground.tint_strength,
         "ground_albedo": tuple(state.ground.albedo),
         "patches": state.ground.patches,
+        "leaf_transmission": _triple(state.ground.translucency * np.asarray(state.ground.glow)),
         "e_sun": _triple(now.sun_irradiance),
         "e_sky": _triple(now.sky_irradiance),
         "sun": _triple(sun),

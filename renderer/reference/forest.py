@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from renderer.core.errors import InputError
-from renderer.reference.forest_light import NOMINAL_ALBEDO, rows
+from renderer.reference.forest_light import GOURAUD, LAMBERT, LEAF, NOMINAL_ALBEDO, rows
 from renderer.reference.forest_world import Floats, ForestWorld, Scene, prepare
 
 Rays = Callable[[tuple[float, float]], tuple[Floats, Floats]]
@@ -31,6 +31,9 @@ STEPS_PER_CROSSING = 512
 
 LONGEST_STEP = 0.3
 """Longest step of a march, in voxels: below a third of the trilinear filter's width."""
+
+LIGHTS = {"leaf": LEAF, "lambert": LAMBERT, "gouraud": GOURAUD}
+"""The light switch by its option."""
 
 CHUNK = 8
 """Rows between two looks at the clock and the caller's wish to stop."""
@@ -45,7 +48,8 @@ class Options:
         forest_on_ground: trees shade the ground.
         tree_on_tree: trees shade other trees.
         within_tree: a tree shades itself.
-        light: `lambert` by the voxels' normals, or `gouraud` by the terrain's.
+        light: `leaf`, what thin leaves lying as the voxels' normals do make of the sun; or techniques' own `lambert` by
+            those normals, `gouraud` by the terrain's.
         shadow_rays: strata of sunlight on a leaf's full brightness, one shadow ray each; 0 gives every step its own.
         steps_per_crossing: steps of a vertical view march through the layer.
         longest_step: of a slanted one, voxels.
@@ -58,7 +62,7 @@ class Options:
     forest_on_ground: bool = True
     tree_on_tree: bool = True
     within_tree: bool = True
-    light: Literal["lambert", "gouraud"] = "lambert"
+    light: Literal["leaf", "lambert", "gouraud"] = "leaf"
     shadow_rays: int = 16
     steps_per_crossing: int = STEPS_PER_CROSSING
     longest_step: float = LONGEST_STEP
@@ -153,7 +157,7 @@ def _sample(
 ) -> None:
     """Add one sub-pixel sample of the whole picture, a few rows at a time on every thread."""
     switches = np.array([options.terrain, options.forest_on_ground, options.tree_on_tree, options.within_tree,
-                         options.light == "gouraud"])
+                         LIGHTS[options.light]])
     steps = (
         scene.height / options.steps_per_crossing,
         options.longest_step * scene.voxel,

@@ -1,9 +1,9 @@
 """What a ray of the forest reference carries: light scattered at each step, with exact visibility of the sun.
 
-Radiance leaving matter: albedo / pi (E_sun V f + E_sky a). Steps along the view ray are all integrated; only the sun's
-visibility V, which costs a march of its own, is sampled: by strata of equal unshadowed sunlight, one jittered shadow
-ray each. The estimate is unbiased for any number of strata, and its mean over the channels is exact where nothing is
-shadowed.
+Radiance leaving matter: E_sun V f + E_sky a g / pi, f and g what its leaves make of the sun and of an even sky
+(`_leaves`). Steps along the view ray are all integrated; only the sun's visibility V, which costs a march of its own,
+is sampled: by strata of equal unshadowed sunlight, one jittered shadow ray each. The estimate is unbiased for any
+number of strata, and its mean over the channels is exact where nothing is shadowed.
 """
 
 from __future__ import annotations
@@ -41,8 +41,11 @@ DEPTH_LIMIT = 9.2
 LIFT = 1e-3
 """Metres above the ground at which its shadow rays start, so that rounding does not make a facet shade itself."""
 
-TERRAIN, FOREST_ON_GROUND, TREE_ON_TREE, WITHIN_TREE, GOURAUD = range(5)
+TERRAIN, FOREST_ON_GROUND, TREE_ON_TREE, WITHIN_TREE, LIGHT = range(5)
 """Switches of one rendering, in the order the compiled functions read them."""
+
+LEAF, LAMBERT, GOURAUD = range(3)
+"""Values of the switch LIGHT."""
 
 
 @njit(cache=True, nogil=True)
@@ -71,24 +74,71 @@ def visibility(scene, switches, x, y, z, step, mode, own, empty):
 
 
 @njit(cache=True, nogil=True)
-def _canopy_light(scene, switches, x, y, event, voxel, out):
+def _leaves(normal, to_eye, sun):
+    """What a voxel's leaves make of light, by its share of the reflected and of the transmitted.
+
+    Thin sheets, each side of which reflects and passes on light as Lambert's paper does (Ross 1981; Shultis and Myneni
+    1988). A share kappa of them lies across the mean normal, the others face everywhere alike, so that the mean of all
+    normals is the given one; each counts by the area that it shows to the eye.
+
+    Args:
+        normal: mean of the leaves' unit normals, kappa long. to_eye, sun: unit vectors.
+
+    Returns:
+        Factors of reflectance and of transmittance for the sun, radiance per irradiance across its beam, 1/sr; and by
+        how much the sides that are seen face the zenith, -1 to 1.
+    """
+    kappa = math.sqrt(normal[0] ** 2 + normal[1] ** 2 + normal[2] ** 2)
+    scale = 1.0 / kappa if kappa > 0.0 else 0.0
+    kappa = min(kappa, 1.0)
+    lit = (normal[0] * sun[0] + normal[1] * sun[1] + normal[2] * sun[2]) * scale
+    seen = (normal[0] * to_eye[0] + normal[1] * to_eye[1] + normal[2] * to_eye[2]) * scale
+    cosine = min(max(sun[0] * to_eye[0] + sun[1] * to_eye[1] + sun[2] * to_eye[2], -1.0), 1.0)
+    between = math.acos(cosine)
+    # of leaves facing everywhere, the mean of |m.v||m.s| over those that eye and sun see from one side, and from two
+    one_side = (math.sin(between) + (math.pi - between) * cosine) / (3.0 * math.pi)
+    two_sides = (math.sin(between) - between * cosine) / (3.0 * math.pi)
+    shown = max(kappa * abs(seen) + 0.5 * (1.0 - kappa), 1e-9)
+    reflected, passed = (1.0 - kappa) * one_side, (1.0 - kappa) * two_sides
+    if lit * seen > 0.0:
+        reflected += kappa * lit * seen
+    else:
+        passed -= kappa * lit * seen
+    # over all directions the mean of (m.v) m is v / 3
+    upwards = (kappa * seen * normal[2] * scale + (1.0 - kappa) * to_eye[2] / 3.0) / shown
+    return reflected / (math.pi * shown), passed / (math.pi * shown), upwards
+
+
+@njit(cache=True, nogil=True)
+def _is_wood(scene, tu, tv, tk):
+    """Whether the nearest voxel is trunk or branch, through which no light passes."""
+    size, layers = scene.anchor.shape[2], scene.anchor.shape[0]
+    k = min(max(math.floor(tk + 0.5), 0), layers - 1)
+    return scene.anchor[k, math.floor(tv + 0.5) % size, math.floor(tu + 0.5) % size, 3] > 127
+
+
+@njit(cache=True, nogil=True)
+def _canopy_light(scene, switches, x, y, to_eye, event, voxel, out):
     """Unshadowed radiance that matter at a recorded step scatters: out[0:3] from the sky, out[3:6] from the sun."""
     tu, tv, tk = event[TU], event[TV], event[TK]
     voxel_at(scene, tu, tv, tk, voxel)
-    if switches[GOURAUD]:
-        nx, ny, nz = ground_normal(scene, x, y)
-    else:
-        nx, ny, nz = 2.0 * voxel[4] - 1.0, 2.0 * voxel[5] - 1.0, 2.0 * voxel[6] - 1.0
-    length = math.sqrt(nx * nx + ny * ny + nz * nz)
-    facing = 0.0
-    if length > 0.0:
-        facing = max((nx * scene.sun[0] + ny * scene.sun[1] + nz * scene.sun[2]) / length, 0.0)
+    sun = (scene.sun[0], scene.sun[1], scene.sun[2])
+    normal = (2.0 * voxel[4] - 1.0, 2.0 * voxel[5] - 1.0, 2.0 * voxel[6] - 1.0)
+    reflected, passed, upwards = _leaves(normal, to_eye, sun)
+    if switches[LIGHT] != LEAF:
+        nx, ny, nz = ground_normal(scene, x, y) if switches[LIGHT] == GOURAUD else normal
+        length = math.sqrt(nx * nx + ny * ny + nz * nz)
+        facing = (nx * sun[0] + ny * sun[1] + nz * sun[2]) / length if length > 0.0 else 0.0
+        reflected, passed = max(facing, 0.0) / math.pi, 0.0
     foot_x, foot_y = foot(scene, x, y, tu, tv, tk, False)
-    shade = (1.0 + scene.tint * tint(foot_x, foot_y)) / (math.pi * voxel[3])
+    shade = (1.0 + scene.tint * tint(foot_x, foot_y)) / voxel[3]
+    opaque = _is_wood(scene, tu, tv, tk)
     for c in range(3):
         albedo = voxel[c] * shade
-        out[c] = albedo * scene.e_sky[c] * voxel[7]
-        out[3 + c] = albedo * scene.e_sun[c] * facing
+        through = 0.0 if opaque else min(scene.leaf_transmission[c] * albedo, max(1.0 - albedo, 0.0))
+        evenly = 0.5 * (albedo + through + upwards * (albedo - through))
+        out[c] = evenly * scene.e_sky[c] * voxel[7] / math.pi
+        out[3 + c] = (albedo * reflected + through * passed) * scene.e_sun[c]
 
 
 @njit(cache=True, nogil=True)
@@ -139,7 +189,7 @@ def _scatter(
         weight = math.exp(-tau) * -math.expm1(-depth) * kept(scene, x, y)
         tau += depth
         total[3] += weight
-        _canopy_light(scene, switches, x, y, record[e], voxel, light[e])
+        _canopy_light(scene, switches, x, y, (-d[0], -d[1], -d[2]), record[e], voxel, light[e])
         for c in range(3):
             total[c] += weight * light[e, c]
             light[e, 3 + c] *= weight

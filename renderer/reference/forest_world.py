@@ -51,8 +51,9 @@ class ForestWorld:
             meant, m.
         colour: (K, J, I, 4) uint8: albedo x opacity, opacity. Layer 0 lies on the ground, I runs along the first edge
             direction and J along the second.
-        normal: (K, J, I, 4) uint8: normal / 2 + 1/2 and the sky's share.
-        anchor: (K, J, I, 4) uint8: offset to the tree's foot (from 128, sixteenths of a metre) in the first two.
+        normal: (K, J, I, 4) uint8: mean normal / 2 + 1/2, shorter where leaves disagree, and the sky's share.
+        anchor: (K, J, I, 4) uint8: offset to the tree's foot (from 128, sixteenths of a metre) in the first two; the
+            last is above 127 in wood.
         tile: (2, 2, 8, 2) atlas rhombus [down, variant, bottom + 2 left + 4 diagonal].
         seed: of the tiling's hash.
         tint_strength: of the colour change from tree to tree.
@@ -64,6 +65,7 @@ class ForestWorld:
         reach: distance along a ray beyond which nothing is met, m: the ground continues without end, and a ray that
             skims it must be let go.
         fade: distance from the square over which what lies beyond it fades from view, m: exp(-(distance / fade)^2).
+        leaf_transmission: transmittance of the leaves over their reflectance, by channel; wood has none.
         background: radiance behind everything for directions (M, 3) -> (M, 3); None leaves it empty (alpha < 1).
     """
 
@@ -89,6 +91,7 @@ class ForestWorld:
     patches: float = 0.0
     presence: NDArray[np.floating] | None = None
     growth: NDArray[np.floating] | None = None
+    leaf_transmission: Colour3 = (0.0, 0.0, 0.0)
 
     def __post_init__(self) -> None:
         """Refuse arrays that do not fit together.
@@ -151,6 +154,7 @@ class Scene(NamedTuple):
     tint: float
     patches: float
     ground: Floats
+    leaf_transmission: Floats
     e_sun: Floats
     e_sky: Floats
     sun: Floats
@@ -179,6 +183,7 @@ def prepare(world: ForestWorld) -> Scene:
         normal=np.ascontiguousarray(world.normal), anchor=np.ascontiguousarray(world.anchor),
         safe=_safe(world.colour[..., 3]), tile=np.ascontiguousarray(world.tile, np.uint8), seed=int(world.seed),
         tint=float(world.tint_strength), patches=float(world.patches), ground=np.array(world.ground_albedo, np.float64),
+        leaf_transmission=np.array(world.leaf_transmission, np.float64),
         e_sun=np.array(world.e_sun, np.float64), e_sky=np.array(world.e_sky, np.float64),
         sun=np.array(world.sun, np.float64), reach=float(world.reach), fade=float(world.fade))
 

@@ -92,6 +92,11 @@ float free_voxels(vec4 voxel) {
     return two_bytes(voxel.w).x;
 }
 
+// Whether the voxel is trunk or branch, not leaves.
+bool wood_in(vec4 voxel) {
+    return two_bytes(voxel.w).y > 127.5;
+}
+
 // Foot of the tree that owns the voxel: offset in sixteenths of a metre.
 vec2 foot_of(vec2 xy, vec4 voxel) {
     return xy + (two_bytes(voxel.z) - 128.0) * 0.0625;

@@ -1,38 +1,67 @@
-"""Pairs of normals, and the cosines to a sun: what the light techniques are held to."""
+"""Leaves of every kind and direction, and what they send of a sun: what the light techniques are held to."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from renderer.forest.light.gouraud import Gouraud
-from renderer.forest.light.lambert import Lambert
+from renderer.forest.technique import ForestTechnique
 from renderer.world.sun import direction
 from tests.forest import worlds
 
-RNG = np.random.default_rng(12)
 COUNT = 500
+SUNS = ((0, 90), (70, 30), (200, 5), (310, -10))
 
 
-def normals() -> tuple[np.ndarray, np.ndarray]:
-    """Unit normals of voxels (any direction) and of the ground (upwards)."""
-    voxel, ground = RNG.normal(size=(2, COUNT, 3))
-    ground[:, 2] = np.abs(ground[:, 2])
-    return tuple(n / np.linalg.norm(n, axis=1, keepdims=True) for n in (voxel, ground))  # type: ignore[return-value]
+class Leaves(NamedTuple):
+    """Leaves of N voxels, seen from one direction each: (N, 3) or, `flatness`, (N,)."""
+
+    albedo: np.ndarray
+    passed: np.ndarray
+    normal: np.ndarray
+    flatness: np.ndarray
+    slope: np.ndarray
+    to_eye: np.ndarray
 
 
-def light_error(
-    ask: Callable[..., np.ndarray], technique: Gouraud | Lambert,
-    twin: Callable[[np.ndarray, np.ndarray, np.ndarray], np.ndarray],
-) -> float:
-    """Worst error of the light factor against `twin(voxel normal, ground normal, sun)`, over suns and normals."""
+def unit(vectors: np.ndarray) -> np.ndarray:
+    """Vectors (..., 3) at length one."""
+    return vectors / np.linalg.norm(vectors, axis=-1, keepdims=True)
+
+
+def drawn(count: int = COUNT) -> Leaves:
+    """Voxels of every kind: any direction, any disorder, on any slope."""
+    rng = np.random.default_rng(12)
+    normal, slope, to_eye = unit(rng.normal(size=(3, count, 3)))
+    slope[:, 2] = np.abs(slope[:, 2])
+    flatness = rng.uniform(size=count)
+    flatness[: count // 10], flatness[-count // 10 :] = 0, 1
+    return Leaves(*rng.uniform(0, 0.5, (2, count, 3)), normal, flatness, slope, to_eye)
+
+
+MATTER = "Matter(albedo, passed, normal, flatness, slope, vec3(0.5), 0.0)"
+Twin = Callable[[Leaves, np.ndarray], np.ndarray]
+
+
+def sent(
+    ask: Callable[..., np.ndarray], technique: ForestTechnique, leaves: Leaves, sun: Any, **more: Any
+) -> np.ndarray:
+    """Radiance per irradiance of the sun that a light technique's shader gives, (N, 3)."""
+    files = ["forest/matter.glsl", f"forest/light/{technique.kind}.glsl"]
+    return ask(files, f"light_reflected({MATTER}, to_eye)", leaves._asdict(), 3, techniques={"light": technique},
+               state=worlds.state(sun=sun), **more)
+
+
+def light_error(ask: Callable[..., np.ndarray], technique: ForestTechnique, twin: Twin) -> float:
+    """Worst error of what a light technique sends against `twin(leaves, sun)`, over suns and leaves."""
     worst = 0.0
-    for azimuth, elevation in ((0, 90), (70, 30), (200, 5), (310, -10)):
-        state = worlds.state(sun=worlds.sun(azimuth, elevation))
-        voxel, ground = normals()
-        found = ask([f"forest/light/{technique.kind}.glsl"], "light_factor(voxel, ground)",
-                    {"voxel": voxel, "ground": ground}, techniques={"light": technique}, state=state)[:, 0]
+    for azimuth, elevation in SUNS:
+        sun = worlds.sun(azimuth, elevation)
+        leaves = drawn()
+        found = sent(ask, technique, leaves, sun)
         assert (found >= 0).all()
-        worst = max(worst, float(np.abs(found - twin(voxel, ground, np.asarray(direction(state.sun)))).max()))
+        towards = np.asarray(direction(worlds.state(sun=sun).sun))
+        worst = max(worst, float(np.abs(found - twin(leaves, towards)).max()))
     return worst

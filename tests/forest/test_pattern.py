@@ -143,11 +143,15 @@ def test_sky_light_grows_from_the_ground_to_the_top(pattern):
     assert 0.005 < ambient[0] < 0.2
 
 
-def test_normals_are_unit_and_face_the_sky_on_the_crowns(pattern):
+def test_normals_are_means_and_face_the_sky_on_the_crowns(pattern):
     _, normal = decode(pattern)
-    near = pattern["anchor"][..., 2] <= 1
+    full = pattern["colour"][..., 3] > 0
+    wood = full & (pattern["anchor"][..., 3] >= WOOD)
     length = np.linalg.norm(normal[..., :3], axis=-1)
-    assert np.abs(length[near] - 1).max() < 0.02
+    assert length.max() < 1.01
+    # Leaves agree in the main; those all round a thin branch do not.
+    assert 0.6 < length[full & ~wood].mean() < 0.95
+    assert length[wood].mean() < 0.6
     opacity = pattern["colour"][..., 3] / 255
     above = np.cumprod((1 - opacity)[::-1], axis=0)[::-1]
     crust = (above > 0.5) & (opacity > 0.2)

@@ -13,6 +13,7 @@ from renderer.core.cache import key_of
 from renderer.core.params import merge, validate
 from renderer.core.registry import techniques
 from renderer.core.technique import Arrays, Bake, BakedArrays
+from renderer.forest.pattern import WOOD
 from renderer.forest.pattern_mips import mips
 from renderer.forest.safe_distance import safe_distance
 from renderer.forest.state import ForestState
@@ -85,7 +86,8 @@ def together(**arrays: Arrays) -> dict[str, BakedArrays]:
 
 def state(**patch: Any) -> ForestState:
     """A forest's state: defaults, without sky behind it, changed by a merge patch."""
-    given = {"view": {"background": "none"}, "ground": {"albedo": list(GROUND), "tint_strength": 0.0, "patches": 0.0}}
+    level = {"albedo": list(GROUND), "tint_strength": 0.0, "patches": 0.0, "translucency": 0.0}
+    given = {"view": {"background": "none"}, "ground": level}
     return validate(ForestState, merge(merge(ForestState().model_dump(mode="json"), given), patch))
 
 
@@ -126,7 +128,7 @@ def technique(slot: str, kind: str, **parameters: Any) -> dict[str, Any]:
 
 PLAIN = {
     slot: technique(slot, kind)
-    for slot, kind in {"geometry": "ray_march", "shadow": "none", "height_shading": "none", "light": "lambert",
+    for slot, kind in {"geometry": "ray_march", "shadow": "none", "height_shading": "none", "light": "leaf",
                        "sky": "ambient", "filter": "none"}.items()
 }
 """Techniques that add nothing of their own; a test puts the one it is about in its slot."""
@@ -176,11 +178,14 @@ def grove_pattern(arguments: dict[str, Any], inputs: dict[str, Arrays], progress
         near = (out**2).sum(axis=-1) < 1.9
         feet = np.stack([128 - 16 * x, 128 - 16 * y], axis=-1)
         colour[here] = np.where(full[..., None], block, colour[here])
-        normal[here] = np.where(near[..., None], np.concatenate([out / length * 127 + 128, 90 + 80 * near[..., None]],
-                                                                axis=-1), normal[here])
+        # A crown's leaves agree in part; its wood lets no light through.
+        mean = 100 * out / length + 128
+        normal[here] = np.where(near[..., None], np.concatenate([mean, 90 + 80 * near[..., None]], axis=-1),
+                                normal[here])
         anchor[here] = np.where(near[..., None] | full[..., None],
-                                np.concatenate([np.clip(np.rint(feet), 0, 255), 0 * feet + [0, RANK]],
-                                               axis=-1), anchor[here])
+                                np.concatenate([np.clip(np.rint(feet), 0, 255), 0 * feet[..., :1],
+                                                np.where(trunk & ~inside, RANK + WOOD, RANK)[..., None]], axis=-1),
+                                anchor[here])
     anchor[..., 2] = safe_distance(colour[..., 3] > 0)
     level = {"colour": colour, "normal": normal, "anchor": anchor}
     coarser = {f"{name}_{n}": array for n, given in enumerate(mips(level), 1) for name, array in given.items()}

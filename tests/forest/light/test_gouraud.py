@@ -8,37 +8,40 @@ import numpy as np
 import pytest
 
 from renderer.forest.light.gouraud import Gouraud
-from tests.forest.facing import light_error
+from tests.forest.facing import Leaves, Twin, light_error
 from tests.forest.truth import MARCH, Judge
 
 Ask = Callable[..., np.ndarray]
 
 
-def of_strength(strength: float) -> Callable[..., np.ndarray]:
-    return lambda voxel, ground, sun: 1 + strength * (np.maximum(ground @ sun, 0) - 1)
+def of_strength(strength: float) -> Twin:
+    def twin(leaves: Leaves, sun: np.ndarray) -> np.ndarray:
+        return leaves.albedo / np.pi * (1 + strength * (np.maximum(leaves.slope @ sun, 0) - 1))[:, None]
+
+    return twin
 
 
 @pytest.mark.parametrize("strength", [0.0, 0.3, 1.0])
-def test_the_factor_is_the_slopes_cosine(ask: Ask, strength: float) -> None:
-    assert light_error(ask, Gouraud(strength=strength), of_strength(strength)) < 1e-5
+def test_the_light_goes_with_the_slopes_cosine(ask: Ask, strength: float) -> None:
+    assert light_error(ask, Gouraud(strength=strength), of_strength(strength)) < 1e-6
 
 
 @pytest.mark.parametrize(("right", "wrong"), [
-    ("dot(ground_normal, sun_direction)", "dot(voxel_normal, sun_direction)"),
-    ("max(dot(ground_normal, sun_direction), 0.0)", "dot(ground_normal, sun_direction)"),
+    ("dot(matter.slope, sun_direction)", "dot(matter.normal, sun_direction)"),
+    ("max(dot(matter.slope, sun_direction), 0.0)", "dot(matter.slope, sun_direction)"),
     ("mix(1.0, max(dot", "mix(0.0, max(dot"),
 ])
-def test_a_wrong_factor_is_found(ask: Ask, spoil: Callable, right: str, wrong: str) -> None:
+def test_a_wrong_light_is_found(ask: Ask, spoil: Callable, right: str, wrong: str) -> None:
     with spoil("forest/light/gouraud.glsl", right, wrong), pytest.raises(AssertionError):
-        # A negative factor is refused before its error is measured.
-        assert light_error(ask, Gouraud(strength=0.7), of_strength(0.7)) < 0.1
+        # Negative light is refused before its error is measured.
+        assert light_error(ask, Gouraud(strength=0.7), of_strength(0.7)) < 0.02
 
 
 def test_distance_to_the_reference(judge: Judge) -> None:
     judge.holds(
         "light", "gouraud",
         MARCH,
-        0.40,  # crowns without a lit and a dark side
+        0.23,  # crowns without a lit and a dark side
     )
 
 
