@@ -49,7 +49,7 @@ def add(commands: Any) -> None:
     command.set_defaults(run=bench)
 
 
-class _Teller:
+class Teller:
     """A bar fed with a share and words."""
 
     def __init__(self, name: str) -> None:
@@ -107,23 +107,23 @@ def study(given: argparse.Namespace) -> int:
             given.size,
         ).checked()
         folder = Path(load().study) / given.scene
-        tell = _Teller(given.scene)
+        tell = Teller(given.scene)
         try:
             studying.run(session, plan, folder, given.frames, tell, tell.inner)
         finally:
             tell.bar.close()
     if given.docs:
-        _keep(folder, DOCS / "study" / given.scene)
+        for part in ("", "shadow"):
+            keep(folder / part, DOCS / "study" / given.scene / part, KEPT)
     print(f"{folder}: results.jsonl, table.md, speed_accuracy.svg .png .csv; in shadow/ those of the shadows alone")
     return 0
 
 
-def _keep(folder: Path, docs: Path) -> None:
+def keep(folder: Path, docs: Path, names: tuple[str, ...]) -> None:
     """Copy what is small into the documentation."""
-    for part in ("", "shadow"):
-        (docs / part).mkdir(parents=True, exist_ok=True)
-        for name in KEPT:
-            shutil.copyfile(folder / part / name, docs / part / name)
+    docs.mkdir(parents=True, exist_ok=True)
+    for name in names:
+        shutil.copyfile(folder / name, docs / name)
 
 
 def bench(given: argparse.Namespace) -> int:
@@ -138,7 +138,7 @@ def bench(given: argparse.Namespace) -> int:
     with Session() as session:
         presets = names_of("--presets", given.presets, tuple(session.describe(given.scene)["presets"]))
         machine = benching.provenance(session.gl.info.renderer)
-        tell = _Teller(given.scene)
+        tell = Teller(given.scene)
         try:
             first = session.state(given.scene, presets[0])
             session.prepare(first, tell.bar).future.result()
@@ -159,7 +159,7 @@ def bench(given: argparse.Namespace) -> int:
     return 0
 
 
-def _doors(session: Session, first: Any, parts: tuple[str, ...], tell: _Teller) -> dict[str, Any]:
+def _doors(session: Session, first: Any, parts: tuple[str, ...], tell: Teller) -> dict[str, Any]:
     """Encoding, the browser and several sessions, as far as they are wanted."""
     from renderer.benching import SIZES
     from server import bench as doors
@@ -179,7 +179,7 @@ def _doors(session: Session, first: Any, parts: tuple[str, ...], tell: _Teller) 
     return found
 
 
-def _pictures(session: Session, scene: str, presets: tuple[str, ...], tell: _Teller) -> list[str]:
+def _pictures(session: Session, scene: str, presets: tuple[str, ...], tell: Teller) -> list[str]:
     """Small pictures of each preset at three suns, into the documentation."""
     from renderer import benching
     from server.bench import small_jpeg

@@ -44,10 +44,10 @@ class SunMap(ForestTechnique):
         source="Cohen 2004, section 5.1",
     )
     bias: float = param(
-        0.3, label="Bias", help="How far behind the first matter light still arrives.", unit="m", ge=0, le=10
+        0.5, label="Bias", help="How far behind the first matter light still arrives.", unit="m", ge=0, le=10
     )
     texel_bias: float = param(
-        0.25, label="Bias by texel", help="The same for each metre of a texel's width.", unit="ratio", ge=0, le=4
+        0.3, label="Bias by texel", help="The same for each metre of a texel's width.", unit="ratio", ge=0, le=4
     )
     strength: float = param(1.0, label="Strength", help="Share of the shadow.", unit="ratio", ge=0, le=1)
 

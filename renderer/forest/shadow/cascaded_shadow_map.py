@@ -63,7 +63,7 @@ class CascadedShadowMap(SunMap):
         source="Reeves, Salesin & Cook 1987",
     )
     fade: float = param(
-        0.0,
+        1.0,
         label="Fade",
         help="Length over which light is lost behind the first matter; 0 at once.",
         unit="m",

@@ -44,7 +44,7 @@ def test_a_brinks_shadow_ends_where_geometry_says(paint: Paint, elevation: float
     ("file", "right", "wrong"),
     [
         (FRAME, "(line - window.xy) / window.zw", "(line - window.xy) / window.wz * 1.1"),
-        (PASS, "* window.zw;", "* window.zw * 0.98;"),
+        (PASS, "* window.zw;", "* window.zw * 0.9;"),
         (PASS, "floor(pixel.y / shadow_resolution)", "1.0"),
     ],
 )
