@@ -34,6 +34,7 @@ const asJson = (body) => ({ method: "POST", headers: { "Content-Type": "applicat
 
 export const scenes = async () => (await request("api/scenes")).json();
 export const scene = async (name) => (await request(`api/scenes/${encodeURIComponent(name)}`)).json();
+export const quantities = async () => (await request("api/measure")).json();
 export const measureSun = async (moment) => (await request("api/measure/sun", asJson(moment))).json();
 
 /** Seconds of precomputation that a state with other values would take. */

@@ -16,6 +16,7 @@ import { decode, Share } from "./share.js";
 import { Link } from "./socket.js";
 import { Stats } from "./stats.js";
 import { Store } from "./store.js";
+import { SunStudy } from "./sunstudy.js";
 import * as theme from "./theme.js";
 import { SunBar } from "./timeline.js";
 import { Upload } from "./upload.js";
@@ -36,6 +37,7 @@ const sunBar = new SunBar(find("#sun"), store, link, () => panels.context());
 const compare = new Compare(find("#compare"), screen, store, link, notices);
 const gallery = new Gallery(find("#gallery"), find("#scene"), store, choose);
 const share = new Share(store, screen, notices);
+const sunStudy = new SunStudy(store);
 const dialog = find("#dialog");
 const upload = new Upload(dialog, store, notices);
 new Frames(link, screen, stats);
@@ -53,6 +55,7 @@ const tools = {
   undo: iconButton("undo", "Undo", () => store.undo()),
   redo: iconButton("redo", "Redo", () => store.redo()),
   compare: iconButton("compare", "Compare", () => unfold("compare"), { "aria-expanded": "false", "aria-controls": "compare" }),
+  sunlight: iconButton("sun", "Study the sun over days", () => show("Sun study", (root) => sunStudy.fill(root))),
   open: iconButton("open", "Open a file", () => upload.choose()),
   share: iconButton("share", "Copy a link to this picture", () => share.copyLink()),
   export: iconButton("export", "Export", () => show("Export", (root, close) => share.fillExport(root, close))),
@@ -178,7 +181,7 @@ addEventListener("keydown", (event) => {
 
 function assemble() {
   const rule = () => el("hr", { "aria-hidden": "true" });
-  find("#tools").append(tools.undo, tools.redo, rule(), tools.compare, tools.open, rule(), tools.share, tools.export, tools.code, rule(), tools.theme, tools.help, tools.panel);
+  find("#tools").append(tools.undo, tools.redo, rule(), tools.compare, tools.sunlight, tools.open, rule(), tools.share, tools.export, tools.code, rule(), tools.theme, tools.help, tools.panel);
   const close = (name) => iconButton("close", "Close", () => { unfold(name, false); tools[name].focus(); });
   for (const name of ["panel", "compare"]) find(`#${name} .panel-head`).append(close(name));
   dialog.querySelector(".panel-head").append(iconButton("close", "Close", () => dialog.close()));

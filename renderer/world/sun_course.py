@@ -77,7 +77,7 @@ class SunlightPeriod(Model):
         ge=-180,
         le=180,
     )
-    receiver: Literal["ground", "canopy", "bare"] = param(
+    receiver: Literal["ground", "canopy", "bare_ground"] = param(
         "ground",
         label="On",
         help="What the sun falls on: ground between trees, the top of the trees and what lies between, or bare ground, "

@@ -82,7 +82,7 @@ class Light:
         return result
 
     def _of(self, nodes: NDArray[np.int64], progress: Progress) -> NDArray[np.float32]:
-        surface = self.ground if self.receiver == "bare" else self.surface
+        surface = self.ground if self.receiver == "bare_ground" else self.surface
         low, high = self.altitudes
         rows, columns = nodes[:, 0], nodes[:, 1]
         share = np.clip((self.ground[rows, columns] - low) / max(high - low, 1e-6), 0.0, 1.0).astype(np.float64)

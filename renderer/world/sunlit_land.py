@@ -88,9 +88,9 @@ def check_receiver(receiver: str, land: Land) -> None:
         InputError: of the tops of trees where none stand, or of ground that trees cover wholly.
     """
     if receiver == "canopy" and not land.wooded:
-        raise InputError("receiver", "is the canopy, but no tree stands on this land", "ground, or bare")
+        raise InputError("receiver", "is the canopy, but no tree stands on this land", "ground, or bare_ground")
     if receiver == "ground" and land.closed:
-        raise InputError("receiver", "is the ground, but trees cover all of it", "canopy, or bare")
+        raise InputError("receiver", "is the ground, but trees cover all of it", "canopy, or bare_ground")
 
 
 def place_of(period: SunlightPeriod, land: Land) -> Place:

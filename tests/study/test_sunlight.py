@@ -48,7 +48,7 @@ def test_under_trees_there_is_no_value(wall: Path, tmp_path: Path) -> None:
     np.testing.assert_array_equal(np.isnan(found.arrays["hours"]), heights > 0)
     assert json.loads(json.dumps(found.as_json(), allow_nan=False))["hours"][0][0] is None
     tops = door.measure("sunlight", {**DAY, "receiver": "canopy"}, files).arrays["hours"]
-    bare = door.measure("sunlight", {**DAY, "receiver": "bare"}, files).arrays["hours"]
+    bare = door.measure("sunlight", {**DAY, "receiver": "bare_ground"}, files).arrays["hours"]
     assert np.all(tops[:, 0] >= bare[:, 0])
     assert not np.isnan(tops).any()
 

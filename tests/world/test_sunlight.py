@@ -183,7 +183,7 @@ def test_trees_shade_the_ground_and_stand_in_the_sun_themselves() -> None:
     top = replace(light, receiver="canopy").at(nodes)
     assert top[0, 0] == pytest.approx(light.suns.hours)
     np.testing.assert_array_equal(top[1:], [shaded, open_])
-    bare = replace(light, receiver="bare").at(nodes)
+    bare = replace(light, receiver="bare_ground").at(nodes)
     np.testing.assert_allclose(bare[:, 0], light.suns.hours)
 
 
