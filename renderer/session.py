@@ -222,9 +222,16 @@ class Session:
 
     def add_asset(self, path: Path, filename: str, reading: Mapping[str, Any] | None = None) -> dict[str, Any]:
         """Check an uploaded file in a process of its own and keep it: see `renderer.world.upload.admit`."""
+        return self.admit(self.assets, path, filename, reading)
+
+    @staticmethod
+    def admit(
+        assets: AssetStore, path: Path, filename: str, reading: Mapping[str, Any] | None = None
+    ) -> dict[str, Any]:
+        """As `add_asset`, into any store; needs no GL."""
         from renderer.world.upload import admit
 
-        return admit(self.assets, path, filename, reading)
+        return admit(assets, path, filename, reading)
 
     @staticmethod
     def quantities() -> list[dict[str, Any]]:

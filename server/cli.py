@@ -7,7 +7,7 @@ import sys
 from collections.abc import Sequence
 
 from renderer.core.errors import InputError, InvalidDocument, UmbrageError
-from server import cli_draw, cli_measure, cli_serve, cli_stability, cli_study, cli_sunlight
+from server import cli_asset, cli_draw, cli_measure, cli_serve, cli_stability, cli_study, cli_sunlight
 
 FAILED, REFUSED, INTERRUPTED = 1, 2, 130
 """Exit codes: something of ours or of the machine, something that was asked wrongly, Ctrl-C."""
@@ -21,6 +21,7 @@ def parser(arguments: Sequence[str]) -> argparse.ArgumentParser:
     commands = top.add_subparsers(dest="command", required=True, metavar="COMMAND")
     cli_serve.add(commands)
     cli_draw.add(commands)
+    cli_asset.add(commands)
     cli_measure.add(commands, "measure" in arguments)
     cli_sunlight.add(commands, "sunstudy" in arguments)
     cli_study.add(commands)

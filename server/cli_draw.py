@@ -14,6 +14,7 @@ from typing import Any
 
 from renderer.core.errors import InputError, LimitError
 from renderer.session import Session
+from server.cli_asset import kept_files
 from server.cli_progress import Bar
 from server.settings import Settings, load
 
@@ -57,7 +58,7 @@ def state_options(command: argparse.ArgumentParser, required: bool = True) -> No
         action="append",
         default=[],
         dest="sets",
-        help="one parameter, as sun.elevation=12; may be repeated",
+        help="one parameter, as sun.elevation=12 or terrain.asset=hill.npz; may be repeated",
     )
 
 
@@ -140,6 +141,8 @@ def state_of(session: Session, given: argparse.Namespace) -> Any:
         if not equals:
             raise InputError("--set", f"{entry} has no value", "PATH=VALUE")
         sets[path] = value_of(text)
+    if sets:
+        sets = kept_files(sets, session.describe(given.scene)["schema"], session.assets)
     return session.state(given.scene, given.preset, sets, document_of(given.state) if given.state else None)
 
 

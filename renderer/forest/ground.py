@@ -49,6 +49,12 @@ def cover_map(elevation: np.ndarray, base: float, rules: dict[str, Any]) -> np.n
         elevation: height above the base [m], row 0 the northern edge. base: elevation of its zero [m].
         rules: the document's `cover`.
     """
+    cover = np.minimum(_glades(elevation, rules), _below_the_line(elevation, base, rules))
+    return _rimmed(cover, RIM).astype(np.float32)
+
+
+def _glades(elevation: np.ndarray, rules: dict[str, Any]) -> np.ndarray:
+    """The cover that clearings and steep ground leave."""
     noise = np.random.Generator(np.random.PCG64(rules["seed"])).standard_normal(elevation.shape)
     sigma = rules["glade_size"] / CELL / 4
     field = (
@@ -64,10 +70,14 @@ def cover_map(elevation: np.ndarray, base: float, rules: dict[str, Any]) -> np.n
     north, east = np.gradient(elevation, CELL)
     slope = np.hypot(north, east)
     steep = math.tan(math.radians(rules["steepest"]))
-    cover = np.minimum(cover, np.clip(0.5 + (steep - slope) * 4, 0, 1))
+    return np.minimum(cover, np.clip(0.5 + (steep - slope) * 4, 0, 1))
+
+
+def _below_the_line(elevation: np.ndarray, base: float, rules: dict[str, Any]) -> np.ndarray:
+    """The share of the trees that the tree line leaves, from 1 to 0 over its width."""
     line = rules["tree_line"] + rules["tree_line_aspect"] * sunward(elevation)
-    cover = np.minimum(cover, np.clip(0.5 + (line - base - elevation) / rules["tree_line_width"], 0, 1))
-    return _rimmed(cover, RIM).astype(np.float32)
+    share: np.ndarray = np.clip(0.5 + (line - base - elevation) / rules["tree_line_width"], 0, 1)
+    return share
 
 
 def _rimmed(cover: np.ndarray, rim: int) -> np.ndarray:
@@ -76,15 +86,13 @@ def _rimmed(cover: np.ndarray, rim: int) -> np.ndarray:
     return cover
 
 
-def presence_map(cover: np.ndarray, elevation: np.ndarray, base: float, rules: dict[str, Any]) -> np.ndarray:
+def presence_map(elevation: np.ndarray, base: float, rules: dict[str, Any]) -> np.ndarray:
     """Share of the stand's trees that are there, (P, P) in [0, 1]: a tree stands where its rank is below it.
 
     The forest is whole inside its edge and thins out over a row of trees; at the tree line, over its whole width.
     """
-    share = np.clip(0.5 + EDGE * (cover - 0.5), 0, 1)
-    line = rules["tree_line"] + rules["tree_line_aspect"] * sunward(elevation)
-    share = np.minimum(share, np.clip(0.5 + (line - base - elevation) / rules["tree_line_width"], 0, 1))
-    return spread(share, PRESENCE_SIDE)
+    share = np.clip(0.5 + EDGE * (_glades(elevation, rules) - 0.5), 0, 1)
+    return spread(np.minimum(share, _below_the_line(elevation, base, rules)), PRESENCE_SIDE)
 
 
 def bake_ground(arguments: dict[str, Any], inputs: dict[str, Arrays], progress: Callable[[float, str], None]) -> Arrays:
@@ -105,7 +113,7 @@ def bake_ground(arguments: dict[str, Any], inputs: dict[str, Arrays], progress: 
     progress(0.6, "laying out the forest")
     rules = arguments["cover"]
     cover = cover_map(elevation, base, rules)
-    presence = presence_map(cover, elevation, base, rules)
+    presence = presence_map(elevation, base, rules)
     growth = np.ones(cover.shape, np.float32)
     if rules["canopy_model"]:
         progress(0.7, "reading the canopy heights")

@@ -122,7 +122,8 @@ def bake_pattern(
         `normal` uint8 [.., 4]: mean of the normals in world axes (0.5 n + 0.5), as short as they disagree, and the
         share of the sky's light;
         `anchor` uint8 [.., 4]: offset east and north to the tree's foot, 128 + 16 a metre; safe distance in voxels
-        (Chebyshev distance to matter); the tree's rank (`planting.ranked`), plus WOOD in wood; the same with `_1` to `_5` at coarser levels (opacity over the
+        (Chebyshev distance to matter); the tree's rank (`planting.ranked`), plus WOOD in wood;
+        the same with `_1` to `_5` at coarser levels (opacity over the
         level's own voxel length); `tile` uint8 [is_down, variant, key, 2]: see `tiles`; `trees` float32 [n, 6]: foot
         x and y in the atlas [m, world axes], height and crown radius [m], number of the species, number of the mesh.
     """

@@ -33,7 +33,8 @@ def lay(
     Args:
         mask, area, normal, sums: see `Voxels`, [.., k, j, i]. corner: (2,) voxel (i, j) of their corner, from that
         of the rhombus.
-        foot: (2,) [m] from the corner of the rhombus. rank: of the tree. axes: (2, 2) sides of a voxel [m] along i and j.
+        foot: (2,) [m] from the corner of the rhombus. rank: of the tree.
+        axes: (2, 2) sides of a voxel [m] along i and j.
         shifts: (S, 2) voxel (i, j) of the rhombi. atlas_*: results; `atlas_most` is the largest area that one tree
         has in the voxel.
     """

@@ -116,7 +116,7 @@ def ranked(planted: list[Standing], base: np.ndarray) -> list[Standing]:
     """The trees with the ranks in which a thinner stand keeps them: any first share of them stands evenly.
 
     Each rank goes to the tree that is farthest from those ranked before, over every rhombus where either stands, round
-    the torus of the atlas: a progressive sequence, as Eldar et al. 1997 ("The farthest point strategy") sample pictures.
+    the torus of the atlas: a progressive sequence, as Eldar et al. 1997 (farthest point strategy) sample pictures.
     """
     places = np.concatenate([tree.foot + tree.cells @ base for tree in planted])
     owner = np.repeat(np.arange(len(planted)), [len(tree.cells) for tree in planted])

@@ -34,8 +34,9 @@ class Survey:
     """A canopy height model over the square.
 
     Attributes:
-        known: (N, N) bool, whether the model covers the node. share: (P, P) canopy's share against a closed stand of the
-        pattern, NaN where unknown. growth: (N, N) height against the pattern's own.
+        known: (N, N) bool, whether the model covers the node.
+        share: (P, P) canopy's share against a closed stand of the pattern, NaN where unknown.
+        growth: (N, N) height against the pattern's own.
     """
 
     known: np.ndarray
@@ -68,7 +69,8 @@ def density_map(rules: dict[str, Any]) -> np.ndarray:
     full = rules["density_full"] or full
     if values.min() < 0 or values.max() > full * 1.0001:
         raise AssetError(
-            "cover.density_full", f"is {full:g}, where the map has values from {values.min():g} to {values.max():g}",
+            "cover.density_full",
+            f"is {full:g}, where the map has values from {values.min():g} to {values.max():g}",
             "the value that means a closed forest, as 100 for per cent; negative values mean nothing",
         )
     return np.clip(spread(values / full, PRESENCE_SIDE), 0, 1)
@@ -97,8 +99,9 @@ def survey(rules: dict[str, Any], terrain: dict[str, Any], land: Terrain, patter
     """
     field = "cover.canopy_model"
     try:
-        model = load_terrain(stored(rules["canopy_model"], field),
-                             reading=TerrainReading.model_validate(rules["canopy_reading"]))
+        model = load_terrain(
+            stored(rules["canopy_model"], field), reading=TerrainReading.model_validate(rules["canopy_reading"])
+        )
     except InputError as failure:
         named = f"cover.canopy_reading.{failure.field}" if failure.field in TerrainReading.model_fields else field
         raise failure.at(named) from None
@@ -107,8 +110,11 @@ def survey(rules: dict[str, Any], terrain: dict[str, Any], land: Terrain, patter
     if heights.max() < lowest:
         raise AssetError(field, f"has nothing higher than {heights.max():g} m", "heights above the ground in metres")
     if np.quantile(heights, 0.5) > 120:
-        raise AssetError(field, f"has a median of {np.quantile(heights, 0.5):g} m: is it an elevation model?",
-                         "heights of the canopy above the ground, in metres")
+        raise AssetError(
+            field,
+            f"has a median of {np.quantile(heights, 0.5):g} m: is it an elevation model?",
+            "heights of the canopy above the ground, in metres",
+        )
     centre = _centre(model, terrain, land)
     canopy = (heights > lowest).astype(np.float64)
     sigma = NEIGHBOURHOOD / np.array(model.cell_size[::-1])
@@ -132,7 +138,8 @@ def _centre(model: Terrain, terrain: dict[str, Any], land: Terrain) -> tuple[flo
         return east, north
     middles = [
         (grid.origin[0] * grid.crs.unit[0] + grid.size[0] / 2, grid.origin[1] * grid.crs.unit[1] - grid.size[1] / 2)
-        for grid in (land, model) if grid.crs is not None
+        for grid in (land, model)
+        if grid.crs is not None
     ]
     return east + middles[0][0] - middles[1][0], north + middles[0][1] - middles[1][1]
 

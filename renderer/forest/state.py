@@ -109,7 +109,7 @@ class Cover(Model):
     density_map: str = param(
         "",
         label="Density map",
-        help="An uploaded picture, as asset:HASH, stretched over the square: black bears no trees, white the whole stand.",
+        help="An uploaded picture, as asset:HASH, stretched over the square: no trees in black, all in white.",
         cost="bake",
         pattern=r"^(asset:[0-9a-f]{64})?$",
     )

@@ -27,9 +27,9 @@ def world_arrays(state: ForestState, baked: Mapping[str, Arrays]) -> dict[str, A
         baked: arrays of `NEEDS`.
 
     Returns:
-        By name: the arrays of the ground (`elevation`, `cover`, `presence`, `growth`), of the pattern (`colour`, `normal`, `anchor`, `tile`),
-        and the numbers that scale, seed and light them, as the reference's world names them; `background`, the radiance
-        of the sky for unit directions (M, 3), W m-2 sr-1.
+        By name: the arrays of the ground (`elevation`, `cover`, `presence`, `growth`), of the pattern (`colour`,
+        `normal`, `anchor`, `tile`), and the numbers that scale, seed and light them, named as in its world;
+        `background`, the radiance of the sky for unit directions (M, 3), W m-2 sr-1.
     """
     ground, pattern = baked["terrain"], baked["pattern"]
     sun = direction(state.sun)

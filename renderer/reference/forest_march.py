@@ -74,10 +74,10 @@ def _interval(scene, o, d, s, end, curve, layer, tau, limit, step, mode, own, pr
     u0, v0 = lattice(scene, o[0], o[1])
     du, dv = lattice(scene, d[0], d[1])
     # h = q / g with h in [0, 1]: |h'| <= (|q'| + |g'|) / g
-    steepest = max(abs(q1 + 2 * q2 * (s - s0)), abs(q1 + 2 * q2 * (end - s0)))
-    steepest += max(abs(g1 + 2 * g2 * (s - s0)), abs(g1 + 2 * g2 * (end - s0)))
-    steepest *= layers / least
-    rate = max(abs(du) * per, abs(dv) * per, steepest, 1e-12)
+    first, last = s - s0, end - s0
+    steepest = max(abs(q1 + 2 * q2 * first), abs(q1 + 2 * q2 * last))
+    steepest += max(abs(g1 + 2 * g2 * first), abs(g1 + 2 * g2 * last))
+    rate = max(abs(du) * per, abs(dv) * per, steepest * layers / least, 1e-12)
     while s < end:
         ahead = min(s + NUDGE, end)
         u, v = u0 + du * ahead, v0 + dv * ahead

@@ -43,7 +43,7 @@ class ForestWorld:
             between nodes, continued by its edge's value.
         cover: (N, N) cover on the same nodes, 0..1: the ground is wooded where it exceeds 0.5.
         presence: (P, P) share of the trees that stand, 0..1, at the middles of P x P equal parts of the nodes' square
-            (side N cells), bilinear between them: a tree stands where it exceeds the tree's rank over RANKS at its foot;
+            (side N cells), bilinear between them: a tree stands where it exceeds its rank over RANKS at its foot;
             `cover` where it is left out.
         growth: (N, N) height of the layer against `canopy_height` on the nodes, bilinear; 1 where it is left out.
         cell: distance between nodes, m.
@@ -178,7 +178,8 @@ def prepare(world: ForestWorld) -> Scene:
     return Scene(
         elevation=z, slope_x=slope_x, slope_y=-slope_y, cover=cover, share=share, share_cell=share_cell,
         growth=growth, presence=_presence(share, share_cell, len(z) - 1, world.cell), block_top=_block_top(z),
-        top=float(z.max()), layer_top=float(world.canopy_height * growth.max()), cell=float(world.cell), height=float(world.canopy_height),
+        top=float(z.max()), layer_top=float(world.canopy_height * growth.max()), cell=float(world.cell),
+        height=float(world.canopy_height),
         side=float(world.tile_side), voxel=float(world.voxel), colour=np.ascontiguousarray(world.colour),
         normal=np.ascontiguousarray(world.normal), anchor=np.ascontiguousarray(world.anchor),
         safe=_safe(world.colour[..., 3]), tile=np.ascontiguousarray(world.tile, np.uint8), seed=int(world.seed),

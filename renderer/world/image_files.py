@@ -66,7 +66,7 @@ def load_image(path: Path, limits: Limits = DEFAULT_LIMITS, colour: Colour = "sr
 
 
 def load_codes(path: Path, limits: Limits = DEFAULT_LIMITS) -> NDArray:
-    """A picture's numbers as its file holds them, (height, width, channels): codes of PNG and JPEG, values of the others.
+    """A picture's numbers as its file has them, (height, width, channels): codes of PNG and JPEG, values of the others.
 
     Raises:
         AssetError, LimitError: as `load_image`, but for values that are not finite.

@@ -22,7 +22,7 @@ QUANTITIES = ("density", "species")
 
 
 def load_map(path: Path, quantity: str, limits: Limits = DEFAULT_LIMITS) -> tuple[np.ndarray, float]:
-    """A map from a PNG or another picture (grey, or its first channel), a GeoTIFF, or an .npz with an array of that name.
+    """A map from a picture (grey, or its first channel), a GeoTIFF, or an .npz with an array of that name.
 
     Args:
         path: the file. quantity: name of the array in an .npz. limits: bounds on its size.

@@ -17,17 +17,22 @@ from renderer.core.errors import AssetError, InputError, LimitError
 from renderer.world.arrays import npz_names
 from renderer.world.image_files import MAGIC
 from renderer.world.limits import DEFAULT_LIMITS, Limits, check_file
+from renderer.world.maps import QUANTITIES
 from renderer.world.mesh_formats import FORMATS as MESH_FORMATS
 from renderer.world.mesh_formats import mesh_format
 from renderer.world.terrain_files import png_header, terrain_format
 
-Kind = Literal["terrain", "mesh", "volume", "image"]
+Kind = Literal["terrain", "mesh", "volume", "image", "map"]
 """What files are read as; each kind has a loader in this package."""
 
 READ = (
     f"a terrain (GeoTIFF, 16-bit grey PNG, .npz with elevation), a mesh ({MESH_FORMATS}), a volume (.npz with rgba), "
+    "a map (.npz with density or species), "
     "or a picture (PNG, JPEG, HDR, EXR, .npy)"
 )
+
+WANTED = "elevation (a terrain), rgba (a volume), density or species (a map)"
+"""Arrays of which an .npz must have one."""
 
 REFUSED = {
     b"LASF": "is a LAS point cloud, for which there is no loader",
@@ -66,8 +71,10 @@ def recognise(path: Path, filename: str = "", limits: Limits = DEFAULT_LIMITS) -
         names = npz_names(path)
         if "elevation" in names or "rgba" in names:
             return "terrain" if "elevation" in names else "volume"
+        if any(name in names for name in QUANTITIES):
+            return "map"
         held = ", ".join(name[:40] for name in names[:5]) or "none"
-        raise AssetError("file", f"is an archive with the arrays: {held}", "elevation (a terrain) or rgba (a volume)")
+        raise AssetError("file", f"is an archive with the arrays: {held}", WANTED)
     if any(head.startswith(magic) for magic, _ in MAGIC):
         return "image"
     if mesh_format(path.read_bytes(), filename) is not None:

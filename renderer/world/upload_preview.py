@@ -8,8 +8,10 @@ from typing import Any
 
 from renderer.core.errors import InputError
 from renderer.core.params import validate
+from renderer.world.arrays import npz_names
 from renderer.world.image_files import load_image
 from renderer.world.limits import Limits, Unsaid
+from renderer.world.maps import QUANTITIES, load_map
 from renderer.world.mesh import MeshReading, load_mesh
 from renderer.world.terrain import TerrainReading, load_terrain
 from renderer.world.volume import VolumeReading, load_volume
@@ -97,10 +99,25 @@ def image(path: Path, limits: Limits, reading: Mapping[str, Any]) -> Preview:
     }
 
 
+def quantity(path: Path, limits: Limits, reading: Mapping[str, Any]) -> Preview:
+    """Extent in values and range of a map of one quantity; it has nothing to be said."""
+    if reading:
+        raise InputError(next(iter(reading)), "is not a parameter: a map leaves nothing unsaid")
+    name = next(name for name in QUANTITIES if name in npz_names(path))
+    values, full = load_map(path, name, limits)
+    return {
+        "quantity": name,
+        "rows": values.shape[0],
+        "columns": values.shape[1],
+        "values": {"lowest": float(values.min()), "highest": float(values.max()), "full": full},
+    }
+
+
 PREVIEWS: dict[str, Callable[[Path, Limits, Mapping[str, Any]], Preview]] = {
     "terrain": terrain,
     "mesh": mesh,
     "volume": volume,
     "image": image,
+    "map": quantity,
 }
 """One loader a kind; `upload.Kind` names the same."""

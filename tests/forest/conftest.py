@@ -104,7 +104,8 @@ def _asked(
         given |= uniforms(technique, slot) | technique.constants()
     try:
         return probe(gl, ["forest/world.glsl", *files], body, inputs, outputs, uniforms=given | dict(values or {}),
-                     textures=held | made, declarations="\n".join([*text, declarations]), defines=program._limits(local))
+                     textures=held | made, declarations="\n".join([*text, declarations]),
+                     defines=program._limits(local))
     finally:
         for texture in made.values():
             texture.release()

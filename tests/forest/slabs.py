@@ -39,7 +39,7 @@ def plane(slope: float) -> dict[str, np.ndarray]:
 
 def trace(
     ask: Callable[..., np.ndarray], technique: Slices | RayMarch, origin: Any, direction: Any,
-    pattern: Mapping[str, np.ndarray], terrain: Mapping[str, np.ndarray] | None = None,
+    pattern: Mapping[str, np.ndarray], terrain: Mapping[str, np.ndarray] | None = None, local: bool = False,
 ) -> np.ndarray:
     """Whether each ray looks at the light on the ground, its opacity, and height and z of that place: (RAYS, 4)."""
     xi, jitter = strata()
@@ -47,7 +47,8 @@ def trace(
     inputs = {"xi": xi, "jitter": jitter, "origin": np.tile(np.asarray(origin, np.float32), (RAYS, 1)),
               "direction": np.tile(d.astype(np.float32), (RAYS, 1))}
     file = f"forest/geometry/{technique.kind}.glsl"
-    return ask([*FILES, file], TRACE, inputs, 4, techniques={"geometry": technique}, pattern=pattern, terrain=terrain)
+    return ask([*FILES, file], TRACE, inputs, 4, techniques={"geometry": technique}, pattern=pattern, terrain=terrain,
+               local=local)
 
 
 def slab_error(

@@ -90,7 +90,7 @@ def test_the_default_relief_keeps_a_centimetre() -> None:
 
 
 def stand_error(ask: Ask) -> float:
-    """Share of places where the shader's trees differ from those whose rank the bilinear share at their foot exceeds."""
+    """Share of places where the shader's trees differ from those whose rank the share at their foot exceeds."""
     share = RNG.integers(0, 256, (PRESENCE_SIDE, PRESENCE_SIDE)).astype(np.uint8)
     share[::3] = 255
     terrain = worlds.ground() | {"presence": share}
@@ -110,7 +110,8 @@ def test_trees_stand_where_the_share_exceeds_their_rank(ask: Ask) -> None:
 
 
 @pytest.mark.parametrize(("right", "wrong"), [
-    ("return xy / (terrain_cell * terrain_nodes) + 0.5;", "return vec2(xy.x, -xy.y) / (terrain_cell * terrain_nodes) + 0.5;"),
+    ("return xy / (terrain_cell * terrain_nodes) + 0.5;",
+     "return vec2(xy.x, -xy.y) / (terrain_cell * terrain_nodes) + 0.5;"),
     ("mod(two_bytes(voxel.w).y, 128.0)", "two_bytes(voxel.w).y"),
 ])
 def test_a_wrong_stand_is_found(ask: Ask, spoil: Callable, right: str, wrong: str) -> None:

@@ -110,8 +110,8 @@ def test_kinds_without_a_loader_are_refused_in_words(data: bytes, words: str, tm
 
 
 def test_archives_of_other_arrays_name_what_they_hold(tmp_path: Path) -> None:
-    with pytest.raises(AssetError, match=r"file.*density.*elevation \(a terrain\)"):
-        recognise(npz(tmp_path / "x.npz", density=HEIGHTS))
+    with pytest.raises(AssetError, match=r"file.*wind.*elevation \(a terrain\)"):
+        recognise(npz(tmp_path / "x.npz", wind=HEIGHTS))
 
 
 def test_previews_say_size_units_and_extent(samples: dict[str, Path]) -> None:

@@ -18,13 +18,15 @@ void geometry_trace(vec3 origin, vec3 direction, float t, vec4 jitter, inout Eve
     int found = 1;
     for (int i = 0; i < MARCH_STEPS && found == 1; i++) {
         vec3 p = origin + t * direction;
-        float spacing = layer_height(p.xy) / float(geometry_count);
+        float layer = layer_height(p.xy);
+        float spacing = layer / float(geometry_count);
         float longest = 2.0 * spacing;
         vec3 ground = ground_at(p.xy);
         float above = p.z - ground.x;
         float gap = above - canopy_top;
         vec3 ahead = p + 0.25 * direction;
-        float climb = (ahead.z - ground_height(ahead.xy) - above) * 4.0;
+        // Of the height in the layer, which may itself be rising: in metres of the layer here.
+        float climb = ((ahead.z - ground_height(ahead.xy)) * layer / layer_height(ahead.xy) - above) * 4.0;
         float sheet;
         float reach = to_next_sheet(above, climb, spacing, sheet);
         bool over = gap > 0.0;
