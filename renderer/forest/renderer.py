@@ -11,7 +11,14 @@ import numpy as np
 from renderer.core.params import uniforms
 from renderer.core.technique import BakedArrays
 from renderer.forest.program import SCOUT_BLOCKS, TRACE_SLOTS, pass_source, scout_source, shade_source, trace_source
-from renderer.forest.textures import bilinear_cells, ground_textures, pattern_textures, tile_map
+from renderer.forest.textures import (
+    bilinear_cells,
+    ground_textures,
+    kept_textures,
+    pattern_textures,
+    technique_textures,
+    tile_map,
+)
 from renderer.forest.world_scale import CANOPY_HEIGHT, CELL, FADE, NODES, REACH, TILE_SIDE, VOXEL
 from renderer.gl.context import GL
 from renderer.gl.layers import Layers, LayerStore
@@ -25,6 +32,7 @@ from renderer.world.sun import angles, direction
 
 if TYPE_CHECKING:
     from renderer.forest.state import ForestState
+    from renderer.forest.technique import ForestTechnique
 
 Baked = Mapping[str, BakedArrays]
 Prepared = tuple[Source, dict[str, AnyTexture], dict[str, Any]]
@@ -41,7 +49,7 @@ class ForestRenderer:
 
     def __init__(self, gl: GL) -> None:
         self._gl = gl
-        self._baked = Resident(gl, 16)
+        self._baked = Resident(gl, 24)
         self._moment = Resident(gl, 24)
         self._scouts = {side: LayerStore(gl, ((1, "f4"),), SCOUTS_KEPT) for side in SCOUT_BLOCKS}
         self._traces = LayerStore(gl, ((2, "f4"), (4, "nu2")), TRACES_KEPT)
@@ -131,17 +139,26 @@ class ForestRenderer:
 
     def _technique_textures(self, state: ForestState, baked: Baked, textures: dict[str, AnyTexture]) -> None:
         arrays = {name: entry.arrays for name, entry in baked.items()}
+        keys = tuple(sorted(entry.key for entry in baked.values()))
         for slot, technique in state.techniques().items():
-            key = (slot, technique.frame_key(state), tuple(sorted(entry.key for entry in baked.values())))
+            textures |= self._kept(slot, technique, state, baked)
             if technique.frame_key(state):
                 made = self._moment.get(
-                    key,
-                    lambda t=technique, s=slot: {  # type: ignore[misc]
-                        f"{s}_{name}": self._gl.texture2d(array.astype(np.float32), wrap=t.wrap.get(name, "clamp"))
-                        for name, array in t.frame_textures(state, arrays).items()
-                    },
+                    (slot, technique.frame_key(state), keys),
+                    lambda t=technique, s=slot: technique_textures(  # type: ignore[misc]
+                        self._gl, s, t, t.frame_textures(state, arrays)
+                    ),
                 )
                 textures |= made  # type: ignore[arg-type]
+
+    def _kept(
+        self, slot: str, technique: ForestTechnique, state: ForestState, baked: Baked
+    ) -> Mapping[str, AnyTexture]:
+        """The textures of a technique that last as long as the terrain and the pattern."""
+        arrays = {name: entry.arrays for name, entry in baked.items()}
+        key = (slot, technique.kind, baked["terrain"].key, baked["pattern"].key)  # type: ignore[attr-defined]
+        made = self._baked.get(key, lambda: kept_textures(self._gl, slot, technique.kept_textures(state, arrays)))
+        return made  # type: ignore[return-value]
 
     def _shadow_pass(
         self,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
@@ -38,7 +38,8 @@ class SunPass:
 class ForestTechnique(Technique):
     """A technique of the forest.
 
-    `textures` names its samplers; `frame_textures` fills them from what was baked, again each time `frame_key` changes.
+    `textures` names its samplers; `frame_textures` fills them from what was baked, again each time `frame_key` changes,
+    and `kept_textures` those that no sun changes.
     """
 
     extra_declarations: ClassVar[tuple[str, ...]] = ()
@@ -60,7 +61,13 @@ class ForestTechnique(Technique):
         return ()
 
     def frame_textures(self, state: ForestState, baked: Mapping[str, Arrays]) -> dict[str, np.ndarray]:
-        """Arrays (H, W) or (H, W, C) float32 for its samplers, row 0 at the south (texture coordinate 0)."""
+        """Arrays (H, W) or (H, W, C) for its 2D samplers, row 0 at the south (texture coordinate 0), and (K, J, I) or
+        (K, J, I, C) for its 3D ones, over the torus of the atlas; bytes stay bytes, all else becomes float32."""
+        return {}
+
+    def kept_textures(self, state: ForestState, baked: Mapping[str, Arrays]) -> dict[str, Sequence[np.ndarray]]:
+        """Mip levels (K, J, I) or (K, J, I, C) of its 3D samplers, finest first, over the torus of the atlas: made once
+        for a terrain and a pattern, whatever the sun."""
         return {}
 
     def sun_pass(self, state: ForestState, baked: Mapping[str, Arrays], size: tuple[int, int]) -> SunPass | None:

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
+
 import moderngl
 import numpy as np
 from scipy.ndimage import distance_transform_edt
@@ -14,6 +17,9 @@ from renderer.gl.program import AnyTexture
 from renderer.gl.textures import Wrap
 from renderer.world.terrain import normals
 
+if TYPE_CHECKING:
+    from renderer.forest.technique import ForestTechnique
+
 FILTERED = 6.0
 """Metres by which the distance to the next stand is shortened: a texel's diagonal, over which it is filtered."""
 
@@ -22,6 +28,9 @@ HALF = 32768 / 65535
 
 TILE_MAP = 256
 """Cells a side of the patch of tiles that is kept: 10 km, twice the square; farther out it comes round again."""
+
+ATLAS_WRAP: tuple[Wrap, Wrap, Wrap] = ("repeat", "repeat", "clamp")
+"""The atlas comes round along its sides, and ends above and below."""
 
 
 def bilinear_cells(elevation: np.ndarray) -> tuple[np.ndarray, tuple[float, float]]:
@@ -44,7 +53,7 @@ def bilinear_cells(elevation: np.ndarray) -> tuple[np.ndarray, tuple[float, floa
 
 
 def stand_texture(presence: np.ndarray) -> np.ndarray:
-    """Share of the trees that stand (of 255) and metres to the next one at least, (P, P, 2) uint8, row 0 at the south.
+    """Share of the trees that stand (0 to 255) and how far the next one may be [m], (P, P, 2) uint8, row 0 at the south.
 
     Filtered between its texels, as the truth is.
     """
@@ -74,17 +83,37 @@ def packed(colour: np.ndarray, anchor: np.ndarray) -> np.ndarray:
     return both[..., 0::2] * np.uint16(256) + both[..., 1::2]
 
 
+def kept_textures(gl: GL, slot: str, arrays: Mapping[str, Sequence[np.ndarray]]) -> dict[str, AnyTexture]:
+    """A technique's unfiltered 3D samplers over the torus of the atlas, from their mip levels, finest first."""
+    return {
+        f"{slot}_{name}": gl.texture3d(levels[0], "nearest", ATLAS_WRAP, levels[1:]) for name, levels in arrays.items()
+    }
+
+
+def technique_textures(
+    gl: GL, slot: str, technique: ForestTechnique, arrays: Mapping[str, np.ndarray]
+) -> dict[str, AnyTexture]:
+    """A technique's samplers for a moment: filtered, 3D ones over the torus of the atlas; doubles become floats."""
+    made: dict[str, AnyTexture] = {}
+    for name, given in arrays.items():
+        array = given.astype(np.float32) if given.dtype == np.float64 else given
+        if technique.textures[name] == "sampler3D":
+            made[f"{slot}_{name}"] = gl.texture3d(array, "linear", ATLAS_WRAP)
+        else:
+            made[f"{slot}_{name}"] = gl.texture2d(array, wrap=technique.wrap.get(name, "clamp"))
+    return made
+
+
 def pattern_textures(gl: GL, pattern: Arrays) -> dict[str, AnyTexture]:
     """`pattern_voxels` and `pattern_normal` from the `pattern` bake, with its own mip levels."""
     levels = [{name: pattern[f"{name}{end}"] for name in ("colour", "normal", "anchor")} for end in _endings(pattern)]
-    wrap: tuple[Wrap, Wrap, Wrap] = ("repeat", "repeat", "clamp")
     voxels = [packed(level["colour"], level["anchor"]) for level in levels]
     normals_of = [level["normal"] for level in levels]
-    shaded = gl.texture3d(normals_of[0], "linear", wrap, normals_of[1:])
+    shaded = gl.texture3d(normals_of[0], "linear", ATLAS_WRAP, normals_of[1:])
     # The level asked for is always whole: blending two levels would fetch twice for nothing.
     shaded.filter = moderngl.LINEAR_MIPMAP_NEAREST, moderngl.LINEAR
     return {
-        "pattern_voxels": gl.texture3d(voxels[0], "nearest", wrap, voxels[1:]),
+        "pattern_voxels": gl.texture3d(voxels[0], "nearest", ATLAS_WRAP, voxels[1:]),
         "pattern_normal": shaded,
     }
 

@@ -1,0 +1,158 @@
+"""Sun march: Beer and Lambert's law in an even canopy, the land's shadow, and its distance to the reference."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+
+from renderer.forest.land_shadow import land_shadow, shadow_height
+from renderer.forest.shadow.sun_march import SunMarch
+from renderer.forest.world_scale import VOXEL
+from renderer.world.camera import CAMERA_DECLARATIONS
+from tests.forest import worlds
+from tests.forest.truth import MARCH, Judge
+
+Ask = Callable[..., np.ndarray]
+FILE = "forest/shadow/sun_march.glsl"
+ALPHA = 6
+"""Opacity of the even canopy: thin enough that all heights see some of the sun."""
+
+
+def seen(ask: Ask, made: SunMarch, sun: dict[str, Any], position: np.ndarray, *, alpha: int = ALPHA,
+         terrain: Any = None) -> np.ndarray:
+    """Share of the sun at places (N, 3) of an even canopy."""
+    state = worlds.state(sun=sun)
+    ground = terrain or worlds.ground()
+    azimuth, elevation = np.radians(sun["azimuth"]), np.radians(sun["elevation"])
+    height = position[:, 2] / 20
+    return ask([FILE], "shadow_visibility(position, h, vec2(0.0))", {"position": position, "h": height}, state=state,
+               terrain=ground, pattern=worlds.uniform(alpha), techniques={"shadow": made},
+               textures={"shadow_land": land_shadow(ground, (azimuth, elevation))}, declarations=CAMERA_DECLARATIONS,
+               values={"sample_shift": 0.0, "camera_origin": (0.0, 0.0, 0.0)})[:, 0]
+
+
+def beer_error(ask: Ask, **parameters: float) -> float:
+    """Worst error, over heights and suns, of the mean visibility against (1 - alpha)^(path / voxel)."""
+    rng = np.random.default_rng(2)
+    worst = 0.0
+    for elevation in (25.0, 50.0, 85.0):
+        for above in (0.5, 6.0, 13.0, 19.5):
+            places = np.column_stack([rng.uniform(-300, 300, (3000, 2)), np.full(3000, above)])
+            found = seen(ask, SunMarch(**parameters), worlds.sun(70, elevation), places)
+            exact = (1 - ALPHA / 255) ** ((20 - above) / np.sin(np.radians(elevation)) / VOXEL)
+            worst = max(worst, abs(float(found.mean()) - exact))
+    return worst
+
+
+def test_an_even_canopy_dims_as_beer_and_lambert_say(ask: Ask) -> None:
+    # Steps of one voxel; the last one may end beyond the canopy's top by half a step, of opacity 0.024 a voxel.
+    assert beer_error(ask, step=1.0, growth=0.0) < 0.01
+
+
+def test_growing_steps_keep_the_law(ask: Ask) -> None:
+    assert beer_error(ask, step=2.0, growth=0.4) < 0.02
+
+
+@pytest.mark.parametrize(("right", "wrong"), [
+    ("* ds / (scale * voxel_size)", "* ds / voxel_size * 2.0"),
+    ("start += ds;", "start += 1.5 * ds;"),
+    (" ? voxel.x : 0.0", " ? 0.0 : 0.0"),
+])
+def test_a_wrong_depth_is_found(ask: Ask, spoil: Callable, right: str, wrong: str) -> None:
+    with spoil(FILE, right, wrong):
+        assert beer_error(ask, step=1.0, growth=0.0) > 0.03
+
+
+def test_light_grows_with_height_and_none_comes_from_below(ask: Ask) -> None:
+    places = np.column_stack([np.zeros((64, 2)), np.linspace(0.1, 19.9, 64)])
+    for elevation in (10.0, 40.0):
+        found = seen(ask, SunMarch(step=0.5, growth=0.0), worlds.sun(200, elevation), places)
+        assert ((found >= 0) & (found <= 1)).all()
+        assert (np.diff(found) > -0.02).all()
+    assert (seen(ask, SunMarch(), worlds.sun(200, -2), places) == 0).all()
+
+
+def test_a_glade_is_bright_and_opaque_matter_dark(ask: Ask) -> None:
+    places = np.column_stack([np.zeros((16, 2)), np.linspace(0.5, 15, 16)])
+    bare = seen(ask, SunMarch(), worlds.sun(120, 30), places, alpha=255, terrain=worlds.ground(cover=0.0))
+    np.testing.assert_allclose(bare, 1, atol=1e-5)
+    assert seen(ask, SunMarch(), worlds.sun(120, 30), places, alpha=255).max() < 0.02
+
+
+def bank() -> dict[str, np.ndarray]:
+    """A plateau 40 m high west of x = -52, level ground east of x = -44."""
+    x = (np.arange(512) - 255.5) * 8
+    return worlds.ground(np.where(x < -48, 40.0, 0.0)[None, :], 0.0)
+
+
+def brink_error(ask: Ask, elevation: float = 20.0) -> float:
+    """How far from its true place [m] the plateau's shadow ends on the ground."""
+    x = np.linspace(-40, 160, 4000)
+    places = np.column_stack([x, np.zeros_like(x), np.full_like(x, 0.3)])
+    found = seen(ask, SunMarch(), worlds.sun(270, elevation), places, alpha=0, terrain=bank())
+    exact = -52 + (40 - 0.3) / np.tan(np.radians(elevation))
+    return abs(float(x[found < 0.5].max(initial=-40)) - exact)
+
+
+def test_a_plateaus_shadow_ends_where_geometry_says(ask: Ask) -> None:
+    # Half a cell where the shadow's upper side is filtered between nodes.
+    assert max(brink_error(ask, 20.0), brink_error(ask, 31.0)) < 1.0
+
+
+def test_a_shadow_of_the_wrong_height_is_found(ask: Ask, spoil: Callable) -> None:
+    with spoil(FILE, "q.z - shade", "q.z - shade + 5.0"):
+        assert brink_error(ask) > 5
+
+
+@pytest.mark.parametrize("azimuth", [0.0, 90.0, 180.0, 270.0, 37.0, 214.0])
+def test_the_land_s_shadow_is_the_highest_ray(azimuth: float) -> None:
+    """Against a search along each node's own ray, over a smooth land that both interpolate alike."""
+    place = np.arange(48) * 10.0
+    x, y = np.meshgrid(place, -place)
+    land = 30 * np.sin(x / 90) * np.cos(y / 70) + 20 * np.sin((x + y) / 160)
+    tangent, a = np.tan(np.radians(14.0)), np.radians(azimuth)
+    found = shadow_height(land, 10.0, a, np.radians(14.0))
+    distance = np.arange(10.0, 480.0, 2.5)
+    column = x[..., None] / 10 + distance * np.sin(a) / 10
+    row = -y[..., None] / 10 - distance * np.cos(a) / 10
+    inside = (np.minimum(column, row) > -1e-6) & (np.maximum(column, row) < 47 + 1e-6)
+    c, r = np.clip(column, 0, 46.999), np.clip(row, 0, 46.999)
+    j, i = c.astype(int), r.astype(int)
+    u, v = c - j, r - i
+    z = (land[i, j] * (1 - u) + land[i, j + 1] * u) * (1 - v) + (land[i + 1, j] * (1 - u) + land[i + 1, j + 1] * u) * v
+    exact = np.where(inside, z - distance * tangent, -1e9).max(axis=-1)
+    inner = (slice(4, -4), slice(4, -4))  # lines beside the square's corners carry its edge with them
+    found, exact, land = found[inner], exact[inner], land[inner]
+    hidden = exact > land + 1.0
+    assert hidden.any()
+    # A node between two lines takes their mean: an error where a ridge ends, and little elsewhere.
+    assert np.abs(found - exact)[hidden].max() < 2.5
+    assert np.abs(found - exact)[hidden].mean() < 0.5
+    assert (found <= np.maximum(exact, land - 30) + 2.5).all()
+
+
+def test_at_night_everything_lies_in_shadow() -> None:
+    assert shadow_height(np.zeros((4, 4)), 8.0, 1.0, -0.1).min() > 1e5
+
+
+def test_distance_to_the_reference(judge: Judge) -> None:
+    judge.holds(
+        "shadow", "sun_march",
+        MARCH,
+        0.012,  # a random place of each voxel, and half a metre of the land's edge
+        0.024,  # steps that grow by 0.4 each, from one voxel on
+        0.007,  # a first step of at least half a pixel
+        against="full",
+    )
+
+
+def test_longer_steps_cost_more(judge: Judge) -> None:
+    coarse = {"shadow": worlds.technique("shadow", "sun_march", step=8.0, growth=1.0, bias=1.0)}
+    assert judge.distance("shadow", "sun_march", "full", **coarse) > 1.1 * (MARCH + 0.043)
+
+
+def test_picture(judge: Judge) -> None:
+    judge.looks("shadow", "sun_march")
