@@ -9,6 +9,7 @@ from renderer.core.technique import Bake
 from renderer.forest.canopy_horizon import bake_canopy_horizon
 from renderer.forest.ground import bake_ground
 from renderer.forest.pattern import bake_pattern
+from renderer.forest.soft_horizon import bake_soft_horizon
 from renderer.forest.terrain_horizon import bake_terrain_horizon
 from renderer.world.sky import bake_sky
 
@@ -44,6 +45,11 @@ def canopy_horizon_bake(pattern: Bake, sectors: int, heights: list[float]) -> Ba
         version=2,
         seconds=5,
     )
+
+
+def soft_horizon_bake(pattern: Bake, sectors: int, heights: list[float]) -> Bake:
+    """Soft canopy horizons over the tile at each height."""
+    return Bake("soft_horizon", bake_soft_horizon, {"sectors": sectors, "heights": heights}, (pattern,), seconds=4)
 
 
 def sky_bake(state: ForestState) -> Bake:

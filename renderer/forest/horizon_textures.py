@@ -1,10 +1,11 @@
-"""Horizon maps resolved for one sun azimuth: the part that the single and the double map share."""
+"""Horizons resolved for one sun azimuth: the part that their techniques share."""
 
 from __future__ import annotations
 
 import math
 
 import numpy as np
+from numba import njit
 
 from renderer.core.technique import Arrays
 
@@ -32,3 +33,34 @@ def at_azimuth(sectors: np.ndarray, azimuth: float) -> np.ndarray:
 def terrain_at(baked: Arrays, azimuth: float) -> np.ndarray:
     """Terrain horizon (N, N) at a sun azimuth, row 0 at the south as textures have it."""
     return np.ascontiguousarray(at_azimuth(baked["sectors"], azimuth)[::-1])
+
+
+@njit(cache=True, nogil=True)
+def _stack(first, second, share, result):
+    """Blend two sectors (L, J, I, 3) of bytes by 256ths, into (L, J + 2, I, 4)."""
+    levels, rows, columns, _ = first.shape
+    one, share, half = np.uint32(256 - share), np.uint32(share), np.uint32(128)
+    for level in range(levels):
+        for j in range(rows + 2):
+            a, b = first[level, (j + rows - 1) % rows], second[level, (j + rows - 1) % rows]
+            for i in range(columns):
+                for channel in range(3):
+                    result[level, j, i, channel] = (a[i, channel] * one + b[i, channel] * share + half) >> np.uint32(8)
+
+
+def stacked_at(soft: np.ndarray, azimuth: float) -> np.ndarray:
+    """A soft horizon at a sun azimuth, its heights one above the other in one texture.
+
+    Args:
+        soft: uint8 [chi, L, J, I, 3], sector k's axis at azimuth 2 pi k / chi. azimuth: of the sun [rad].
+
+    Returns:
+        uint8 (L (J + 2), I, 4): for each height its rows, the last one again before the first and the first after the
+        last, so that no fetch mixes heights; the fourth channel is empty.
+    """
+    count, levels, rows, columns, _ = soft.shape
+    place = (azimuth / (2 * math.pi) * count) % count
+    first, share = int(place) % count, round((place - int(place)) * 256)
+    result = np.zeros((levels, rows + 2, columns, 4), np.uint8)
+    _stack(soft[first], soft[(first + 1) % count], share, result)
+    return result.reshape(-1, columns, 4)

@@ -18,6 +18,12 @@ float stand_towards_sun(vec2 xy) {
     return wooded_at(xy) * wooded_at(xy + NEIGHBOUR * normalize(sun_direction.xy + 1e-6));
 }
 
+// Elevation of the sun over the ground along its azimuth: in the canopy's frame, which is sheared with the ground, a ray rises so.
+float sun_over_ground(vec2 xy) {
+    vec3 normal = textureLod(normals, terrain_coordinate(xy), 0.0).xyz;
+    return atan(sun_direction.z + dot(normal.xy, sun_direction.xy) / max(normal.z, 0.05), length(sun_direction.xy));
+}
+
 // Sun over the land's horizon and over the canopy's: the land hides it wholly, the canopy by its strength, for leaves let light through.
 float horizon_visibility(float land, float canopy, float eps, float strength) {
     float over_land = horizon_lit(land, sun_elevation, min(eps, LAND_SOFTNESS));

@@ -111,6 +111,7 @@ PINNED: dict[str, dict[str, Any]] = {
     "slices": {"count": 32, "correct_opacity": True},
     "horizon_map": {"sectors": 16, "height": 0.5, "softness": 9.0, "strength": 1.0},
     "double_horizon_map": {"sectors": 16, "height_top": 0.75, "height_low": 0.5, "softness": 3.0, "strength": 1.0},
+    "horizon_volume": {"sectors": 8, "levels": 8, "highest": 0.85, "strength": 1.0},
     "depth_shadow_map": {"resolution": 1024, "threshold": 0.3, "bias": 0.75, "strength": 1.0},
     "sun_march": {"step": 1.0, "width": 0.5, "growth": 0.4, "bias": -2.0, "stop": 0.02},
     "empirical": {"strength": 1.0, "foot": 0.5, "rise": 1.0},
