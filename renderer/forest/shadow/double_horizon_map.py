@@ -72,6 +72,24 @@ class DoubleHorizonMap(ForestTechnique):
     strength: float = param(
         1.0, label="Strength", help="Share of the shadow.", unit="ratio", ge=0, le=1, source="Cohen 2004, section 5.4"
     )
+    floor_low: float = param(
+        0.0,
+        label="Least angle of the low map",
+        help="At 90 the lower layers are always dark, as empirical height shading has them.",
+        unit="deg",
+        ge=0,
+        le=90,
+        source="Cohen 2004, section 3.2",
+    )
+    bound: float = param(
+        1.0,
+        label="Upper bound",
+        help="Light of a place in the sun; 1.5 where this stands for empirical height shading.",
+        unit="ratio",
+        ge=1,
+        le=2,
+        source="Cohen 2004, section 3.2",
+    )
 
     def bakes(self, state: ForestState, terrain: Bake, pattern: Bake) -> list[Bake]:
         """The terrain's horizon and the canopy's, in this many sectors."""

@@ -32,9 +32,9 @@ class HorizonMap(ForestTechnique):
         4, label="Sectors", help="Azimuth sectors of the maps.", cost="bake", source="Cohen 2004, section 3.1"
     )
     height: float = param(
-        0.5,
+        0.7,
         label="Map height",
-        help="Normalised canopy height of the map's probes.",
+        help="Normalised canopy height of the map's probes: the treetops; farther down, all below them is black.",
         unit="ratio",
         cost="bake",
         ge=0,

@@ -51,8 +51,8 @@ def test_a_top_map_below_the_low_one_breaks_nothing(ask: Ask) -> None:
 
 @pytest.mark.parametrize(("right", "wrong"), [
     ("clamp((h - shadow_low) / (shadow_top - shadow_low), 0.0, 1.0)", "h"),  # the listing's: errata 000-1
-    ("mix(canopy.g, canopy.r, w)", "mix(canopy.r, canopy.g, w)"),
-    ("return horizon_visibility(land, mix(", "return horizon_visibility(land, 3.14159 * mix("),
+    ("mix(low, canopy.r, w)", "mix(canopy.r, low, w)"),
+    ("horizon_visibility(land, mix(", "horizon_visibility(land, 3.14159 * mix("),
 ])
 def test_a_wrong_weight_is_found(ask: Ask, spoil: Callable, right: str, wrong: str) -> None:
     with spoil(FILE, right, wrong):
@@ -87,6 +87,36 @@ def test_a_glade_knows_no_tile(ask: Ask) -> None:
     made = DoubleHorizonMap(softness=EPS)
     assert visibility(ask, made, 20, canopy=(TOP, LOW), cover=0.0)[0] == 1
     assert visibility(ask, made, 20, canopy=(TOP, LOW), cover=1.0)[0] == 0
+
+
+VARIANT = {"floor_low": 90.0, "bound": 1.5}
+"""Section 3.2's variant, in the place of empirical height shading."""
+
+
+def variant_error(ask: Ask) -> float:
+    """Worst error of the variant: the low layers dark under any sun, the tops half as bright again."""
+    made = DoubleHorizonMap(softness=EPS, height_low=0.5, height_top=1.0, **VARIANT)
+    w, worst = np.clip((HEIGHTS - 0.5) / 0.5, 0, 1), 0.0
+    for elevation in (5, 30, 60, 83):
+        found = visibility(ask, made, elevation, h=HEIGHTS, canopy=(TOP, LOW))
+        worst = max(worst, float(np.abs(found - 1.5 * twin(0, w * TOP + (1 - w) * 90.0, elevation, EPS)).max()))
+        glade = visibility(ask, made, elevation, canopy=(TOP, LOW), cover=0.0)
+        worst = max(worst, float(np.abs(glade - twin(0, 0, elevation, EPS)).max()))
+    return worst
+
+
+def test_the_thesis_variant_keeps_the_lower_layers_dark_and_lights_the_tops(ask: Ask) -> None:
+    assert variant_error(ask) < 1e-5
+
+
+@pytest.mark.parametrize(("right", "wrong"), [
+    ("max(canopy.g, shadow_floor_low * stand_here)", "canopy.g"),
+    ("max(canopy.g, shadow_floor_low * stand_here)", "max(canopy.g, shadow_floor_low)"),
+    ("mix(1.0, shadow_bound, stand_here)", "shadow_bound"), ("mix(1.0, shadow_bound, stand_here) *", ""),
+])
+def test_a_wrong_variant_is_found(ask: Ask, spoil: Callable, right: str, wrong: str) -> None:
+    with spoil(FILE, right, wrong):
+        assert variant_error(ask) > 0.1
 
 
 def visible_at(made: DoubleHorizonMap, azimuth: float) -> np.ndarray:
