@@ -9,7 +9,9 @@ of the cell's segment and where s^2 = c0 / c2, so that the maximum is in closed 
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor, as_completed
 
 import numpy as np
 from numba import njit
@@ -137,11 +139,22 @@ def horizon(
     steps = np.ascontiguousarray(np.stack([-cosine / dy, sine / dx], axis=1))
     shape = (len(eyes), len(angles))
     angle, distance = np.full(shape, -np.pi / 2), np.zeros(shape)
-    total = shape[0] * shape[1]
-    for first in range(0, total, CHUNK):
-        _all(z, eyes, steps, float(z.max()), first, min(first + CHUNK, total), angle, distance)
-        if progress is not None:
-            progress(min(first + CHUNK, total) / total, "tracing horizons")
+    total, top = shape[0] * shape[1], float(z.max())
+
+    def trace(first: int) -> int:
+        last = min(first + CHUNK, total)
+        _all(z, eyes, steps, top, first, last, angle, distance)
+        return last - first
+
+    done = 0
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        try:
+            for traced in as_completed([pool.submit(trace, first) for first in range(0, total, CHUNK)]):
+                done += traced.result()
+                if progress is not None:
+                    progress(done / total, "tracing horizons")
+        finally:
+            pool.shutdown(cancel_futures=True)
     return angle, distance
 
 
