@@ -15,7 +15,8 @@ def save(folder: Path, machine: Mapping[str, Any], found: Mapping[str, Any]) -> 
     Args:
         folder: gets the files.
         machine: where it ran.
-        found: results by part: `frames`, `encode`, `browser`, `sessions`, `pictures`, as far as they were measured.
+        found: results by part: `frames`, `horizons`, `encode`, `browser`, `sessions`, `pictures`, as far as they were
+            measured.
     """
     folder.mkdir(parents=True, exist_ok=True)
     kept = {"machine": machine, "when": int(time.time()), **{k: v for k, v in found.items() if k != "frames"}}
@@ -30,6 +31,9 @@ def _text(machine: Mapping[str, Any], found: Mapping[str, Any]) -> Iterator[str]
     )
     if "frames" in found:
         yield from _frames(found["frames"])
+    if "horizons" in found:
+        yield ""
+        yield from _horizons(found["horizons"])
     if "encode" in found:
         yield ""
         yield from _rows(
@@ -78,6 +82,27 @@ def _frames(lines: Sequence[Mapping[str, Any]]) -> Iterator[str]:
     yield f"Default: {' + '.join(default.values())}. One yardstick took {lines[0]['yardstick_ms']:.1f} ms at first."
     yield ""
     yield from _rows(("preset", "technique", "moves", "size", "median, ms", "p95, ms", "yardsticks", "frames"), rows)
+
+
+def _horizons(lines: Sequence[Mapping[str, Any]]) -> Iterator[str]:
+    """One row a grid: millions of cell-azimuths a second, and the sweep's distance from the exact search."""
+    yield "Horizons of the default terrain, in millions of cells and azimuths a second; errors in degrees."
+    yield ""
+    yield from _rows(
+        ("nodes", "sweep, a core", "sweep, all cores", "search, a core", "ratio", "median error", "p99 error"),
+        [
+            (
+                f"{line['nodes']} x {line['nodes']}",
+                f"{line['swept_per_core'] / 1e6:.1f}",
+                f"{line['swept'] / 1e6:.1f}",
+                f"{line['searched_per_core'] / 1e6:.3f}",
+                f"{line['swept_per_core'] / line['searched_per_core']:.0f}",
+                f"{line['median_error']:.4f}",
+                f"{line['p99_error']:.3f}",
+            )
+            for line in lines
+        ],
+    )
 
 
 def _browser(line: Mapping[str, Any]) -> Iterator[str]:

@@ -22,7 +22,7 @@ KEPT = ("table.md", "speed_accuracy.svg", "speed_accuracy.png")
 FRAMES = 30
 """Timed frames of each technique, from which medians and 95th percentiles are stated."""
 
-PARTS = ("frames", "encode", "browser", "sessions", "pictures")
+PARTS = ("frames", "horizons", "encode", "browser", "sessions", "pictures")
 PICTURE = (640, 360)
 """Width and height of the documentation's pictures."""
 
@@ -129,6 +129,7 @@ def keep(folder: Path, docs: Path, names: tuple[str, ...]) -> None:
 def bench(given: argparse.Namespace) -> int:
     """Time everything, in one run on this machine, and write JSON lines, a table and the documentation's pictures."""
     from renderer import benching
+    from renderer.study.horizon_bench import time_horizons
     from server import bench_report
 
     parts = names_of("--parts", given.parts, PARTS)
@@ -149,6 +150,8 @@ def bench(given: argparse.Namespace) -> int:
                 found["frames"] = benching.time_frames(
                     session, given.scene, results, machine, given.frames, presets, tell
                 )
+            if "horizons" in parts:
+                found["horizons"] = time_horizons(progress=tell)
             found |= _doors(session, first, parts, tell)
             if "pictures" in parts:
                 found["pictures"] = _pictures(session, given.scene, presets, tell)
