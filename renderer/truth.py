@@ -32,9 +32,10 @@ SECONDS_PER_RAY = 160e-6
 NOT_THE_WORLD = ("version", "quality", "view", "time")
 """Fields of a state, beside its slots, that change no reference."""
 
-Judge = Literal["combination", "shadow"]
+Judge = Literal["combination", "shadow", "matter"]
 """What a picture is judged for: `combination` against the full physical reference, `shadow` against exact shadows under
-the picture's own light technique."""
+the picture's own light technique, `matter` against the reference without any shadow, so that what stands where, and how
+it is filtered, answers alone."""
 
 Progress = Callable[[float, str], None]
 
@@ -130,7 +131,8 @@ def truth_of(arrays: Arrays) -> Truth:
 def _forest_options(state: Any, judge: Judge) -> dict[str, Any]:
     """A shadow is judged under the picture's own light where the reference has it; everything else by the leaves."""
     own = judge == "shadow" and state.light.kind in ("lambert", "gouraud")
-    return {"light": state.light.kind if own else "leaf"}
+    bare = {"terrain": False, "forest_on_ground": False, "tree_on_tree": False, "within_tree": False}
+    return {"light": state.light.kind if own else "leaf", **(bare if judge == "matter" else {})}
 
 
 def _forest(

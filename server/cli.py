@@ -7,7 +7,7 @@ import sys
 from collections.abc import Sequence
 
 from renderer.core.errors import InputError, InvalidDocument, UmbrageError
-from server import cli_asset, cli_draw, cli_measure, cli_serve, cli_stability, cli_study, cli_sunlight
+from server import cli_asset, cli_distance, cli_draw, cli_measure, cli_serve, cli_stability, cli_study, cli_sunlight
 
 FAILED, REFUSED, INTERRUPTED = 1, 2, 130
 """Exit codes: something of ours or of the machine, something that was asked wrongly, Ctrl-C."""
@@ -22,6 +22,7 @@ def parser(arguments: Sequence[str]) -> argparse.ArgumentParser:
     cli_serve.add(commands)
     cli_draw.add(commands)
     cli_asset.add(commands)
+    cli_distance.add(commands)
     cli_measure.add(commands, "measure" in arguments)
     cli_sunlight.add(commands, "sunstudy" in arguments)
     cli_study.add(commands)

@@ -64,7 +64,6 @@ def _interval(scene, o, d, s, end, curve, layer, tau, limit, step, mode, own, pr
     Args:
         curve: (s0, q0, q1, q2): the height above ground at s is q0 + q1 t + q2 t^2, t = s - s0, m.
         layer: (g0, g1, g2, least): the canopy's height there, likewise, and the least over the cell, m.
-
     Returns (status, s, tau, n); status LEFT when the part was crossed.
     """
     s0, q0, q1, q2 = curve
