@@ -97,6 +97,7 @@ def meta_of(period: SunlightPeriod, place: Place, plain_hours: float, terrain: T
         "place": {"latitude": place.latitude, "longitude": place.longitude, "altitudes_m": list(place.altitudes)},
         "hours_on_a_plain": plain_hours,
         "cell_size_m": list(terrain.cell_size),
+        "shape": list(terrain.elevation.shape),
         "size_m": [cell * count for cell, count in zip(terrain.cell_size, terrain.elevation.shape[::-1], strict=True)],
         "technique": "horizon of every node along each degree of azimuth, the range's suns counted above it",
         "source": "Dozier and Frew 1990 (sky); Reda and Andreas 2004 (sun); Ineichen and Perez 2002 (clear sky)",

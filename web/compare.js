@@ -1,7 +1,7 @@
 // A beside B: another technique or the reference, by split, blink, difference or error map, with the numbers.
 
 import * as api from "./api.js";
-import { el, follow, freshId, say, segments, terms } from "./dom.js";
+import { el, follow, freshId, say, scaleBar, segments, terms } from "./dom.js";
 import { Progress } from "./notices.js";
 
 const BLINK_MS = 700;
@@ -131,10 +131,8 @@ export class Compare {
   /** The error map's colours, from no error to the top of its scale. */
   legend({ legend, saturated }) {
     const top = legend.at(-1)[0];
-    const bar = el("span", { class: "scale-bar" });
-    bar.style.background = `linear-gradient(90deg, ${legend.map(([, colour]) => `rgb(${colour.join(" ")})`)})`;
-    this.scale.replaceChildren(el("span", { class: "label", text: "Error, as a share of the reference's mean" }), bar,
-      el("span", { class: "scale-ends" }, [0, top / 2, top].map((value) => el("span", { text: `${(100 * value).toFixed(0)} %` }))),
+    this.scale.replaceChildren(el("span", { class: "label", text: "Error, as a share of the reference's mean" }),
+      ...scaleBar(legend.map(([, colour]) => `rgb(${colour.join(" ")})`), [0, top / 2, top].map((value) => `${(100 * value).toFixed(0)} %`)),
       el("span", { class: "hint-facts", text: `${percent(saturated)} of the pixels lie above.` }));
   }
 

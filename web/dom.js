@@ -11,11 +11,12 @@ function apply(node, properties) {
     else if (name === "value") node.value = value;
     else if (name === "class") node.setAttribute("class", value);
     else if (name === "data") Object.assign(node.dataset, value);
+    else if (name === "style") Object.assign(node.style, value);
     else node.setAttribute(name, value === true ? "" : value);
   }
 }
 
-/** An HTML element with properties (`on`, `text`, `class`, `data`, or any attribute) and children. */
+/** An HTML element with properties (`on`, `text`, `class`, `data`, `style`, or any attribute) and children. */
 export function el(tag, properties, ...children) {
   const node = document.createElement(tag);
   apply(node, properties);
@@ -31,31 +32,9 @@ export function svg(tag, properties, ...children) {
   return node;
 }
 
-const ICONS = {
-  undo: "M9 7 4.5 11.5 9 16M5 11.5h9a5 5 0 0 1 0 10h-2",
-  redo: "m15 7 4.5 4.5L15 16M19 11.5h-9a5 5 0 0 0 0 10h2",
-  compare: "M12 3v18M4 7h5v10H4zM15 7h5v10h-5z",
-  share: "M10 14a4 4 0 0 0 6 .4l3-3a4 4 0 0 0-5.7-5.7L12 7M14 10a4 4 0 0 0-6-.4l-3 3a4 4 0 0 0 5.7 5.7L12 17",
-  export: "M12 3v12M7.5 10.5 12 15l4.5-4.5M4 20h16",
-  code: "m8 7-5 5 5 5M16 7l5 5-5 5M13.5 5l-3 14",
-  open: "M12 16V4M7.5 8.5 12 4l4.5 4.5M4 20h16",
-  help: "M9.2 9a3 3 0 1 1 4.3 2.7c-1 .6-1.5 1.2-1.5 2.3M12 17.5v.2M12 3a9 9 0 1 1 0 18 9 9 0 0 1 0-18z",
-  theme: "M12 3a9 9 0 1 0 0 18zM12 3a9 9 0 0 1 0 18",
-  panel: "M4 6h10M18 6h2M4 12h3M11 12h9M4 18h9M17 18h3M16 4v4M9 10v4M15 16v4",
-  play: "M8 5.5v13l11-6.5z",
-  pause: "M8 5.5v13M16 5.5v13",
-  close: "M6 6l12 12M18 6 6 18",
-  reset: "M5 5v5h5M5.6 10A7.5 7.5 0 1 1 4.6 14",
-  place: "M12 21c4.5-4.7 7-8.2 7-11a7 7 0 1 0-14 0c0 2.8 2.5 6.3 7 11zM12 12.5a2.5 2.5 0 1 0 0-5 2.5 2.5 0 0 0 0 5z",
-  down: "m6 9 6 6 6-6",
-  copy: "M9 9h11v11H9zM5 15H4V4h11v1",
-  sun: "M12 8a4 4 0 1 0 0 8 4 4 0 0 0 0-8zM12 2.5v2M12 19.5v2M2.5 12h2M19.5 12h2M5.3 5.3l1.4 1.4M17.3 17.3l1.4 1.4M5.3 18.7l1.4-1.4M17.3 6.7l1.4-1.4",
-};
-
-/** An inline line icon, hidden from screen readers: its button carries the words. */
+/** A line icon of `icons.svg`, hidden from screen readers: its button carries the words. */
 export function icon(name) {
-  const shape = svg("path", { d: ICONS[name] });
-  return svg("svg", { class: "icon", viewBox: "0 0 24 24", "aria-hidden": "true", focusable: "false" }, shape);
+  return svg("svg", { class: "icon", "aria-hidden": "true" }, svg("use", { href: `icons.svg#${name}` }));
 }
 
 /** A button of one icon; `label` is read aloud and shown as its tooltip. */
@@ -66,6 +45,12 @@ export function iconButton(name, label, handler, properties = {}) {
 /** Rows of `[name, value]` as the terms and descriptions of a `dl`. */
 export function terms(rows) {
   return rows.flatMap(([name, value]) => [el("dt", { text: name }), el("dd", { text: value })]);
+}
+
+/** A bar of colours, and under it what its ends and its middle stand for. */
+export function scaleBar(colours, words) {
+  const bar = el("span", { class: "scale-bar", style: { background: `linear-gradient(90deg, ${colours})` } });
+  return [bar, el("span", { class: "scale-ends" }, words.map((text) => el("span", { text })))];
 }
 
 /** A row of choices, `[value, text]` each, of which one holds: the group and its radio buttons. */

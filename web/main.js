@@ -46,9 +46,8 @@ new Probe(find("#probe"), pointer, link, store, () => sunBar);
 
 /** Show a dialog whose body `fill` makes. */
 function show(title, fill) {
-  find("#dialog-title").textContent = title;
+  upload.show(title);
   fill(dialog.querySelector(".dialog-body"), () => dialog.close());
-  dialog.showModal();
 }
 
 const tools = {

@@ -1,28 +1,20 @@
 // A study of the sun over the land that is shown: for a range of days, maps of hours and of energy, to read and to keep.
 
 import * as api from "./api.js";
-import { el, freshId, humanise, numberIn, segments } from "./dom.js";
+import { el, scaleBar } from "./dom.js";
+import { Form } from "./form.js";
 import { Progress } from "./notices.js";
+import { Schema } from "./schema.js";
+import { Store } from "./store.js";
 
-const FIRST = ["start", "end", "receiver", "latitude", "longitude"];
-const MAPS = [["hours", "Hours of sun"], ["insolation", "Insolation"]];
-const HEADER_AT = 8;
-const TALLEST = 46;
-const round = (value) => value.toLocaleString("en", { maximumFractionDigits: Math.abs(value) < 10 ? 1 : 0 });
-
-/** The float32 values of a two-dimensional `.npy`, row by row, and how many columns it has. */
-async function numbersOf(url) {
-  const buffer = await (await fetch(url)).arrayBuffer();
-  const start = HEADER_AT + 2 + new DataView(buffer).getUint16(HEADER_AT, true);
-  const [, columns] = /\((?:\d+), (\d+)\)/.exec(new TextDecoder().decode(buffer.slice(HEADER_AT + 2, start)));
-  return { values: new Float32Array(buffer.slice(start)), columns: Number(columns) };
-}
+const TALLEST = 50;
+const quiet = (...children) => el("p", { class: "hint-facts" }, children);
 
 /** What the dialog shows; a study goes on while the dialog is closed. */
 export class SunStudy {
-  constructor(store) {
-    this.store = store;
-    this.entries = new Map();
+  constructor(land) {
+    this.land = land;
+    this.period = new Store();
   }
 
   async fill(root) {
@@ -31,88 +23,56 @@ export class SunStudy {
   }
 
   async build() {
-    const { schema: { properties } } = (await api.quantities()).find(({ name }) => name === "sunlight");
-    const { sun } = this.store.document;
-    if (sun.kind === "moment") for (const name of ["latitude", "longitude", "time_zone"]) properties[name].default = sun[name];
-    const rest = Object.keys(properties).filter((name) => name !== "points" && !FIRST.includes(name));
-    const rows = (names) => el("div", { class: "pairs" }, names.map((name) => this.entry(name, properties[name])));
+    const schema = new Schema((await api.quantities()).find(({ name }) => name === "sunlight").schema);
+    const { points, ...standard } = schema.defaultOf(schema.root);
+    this.period.document = standard;
+    this.controls = new Map();
+    const form = new Form({ store: this.period, schema, controls: this.controls, defaultOf: (name) => standard[name] });
+    for (const name of Object.keys(standard)) form.add(name, schema.at(name));
+    this.period.addEventListener("change", () => form.refresh(this.period.document));
+    form.refresh(standard);
+    form.root.classList.add("pairs");
     this.progress = new Progress(() => this.abort.abort());
     this.progress.root.hidden = true;
-    this.error = el("p", { class: "field-error", role: "alert" });
-    this.found = el("div", { class: "form" });
-    return el("div", { class: "form" },
-      el("p", { text: "How long the sun reaches each place of this land, and what it sends there under a cloudless sky." }),
-      rows(FIRST),
-      el("details", { class: "fold" }, el("summary", {}, el("h3", { text: "More" })), rows(rest)),
-      el("button", { type: "button", class: "wide", text: "Study the sun", on: { click: () => this.study() } }),
-      this.progress.root, this.error, this.found);
-  }
-
-  entry(name, node) {
-    const id = freshId("study");
-    const unit = node.umbrage?.unit;
-    const shared = { id, title: node.description, value: node.default ?? "" };
-    const field = node.enum ? el("select", { class: "select", ...shared }, node.enum.map((word) => el("option", { value: word, text: humanise(word) })))
-      : el("input", { class: "text", placeholder: node.default === null ? "the land's own" : null, ...shared,
-        type: unit === "date" ? "date" : "text", ...(name === "time_zone" ? { list: "time-zones" } : {}) });
-    if (node.enum) field.value = node.default;
-    this.entries.set(name, { field, text: node.type === "string" });
-    return el("div", { class: "control" }, el("label", { class: "label", for: id, text: node.title + (unit === "deg" ? " (°)" : "") }), field);
-  }
-
-  period() {
-    const given = [...this.entries].filter(([, { field }]) => field.value !== "");
-    return Object.fromEntries(given.map(([name, { field: { value }, text }]) => [name, text || Number.isNaN(numberIn(value)) ? value : numberIn(value)]));
+    this.found = el("div", { class: "form", role: "status" });
+    return el("div", { class: "form" }, form.root,
+      el("button", { type: "button", class: "wide", text: "Study the sun", on: { click: () => this.study() } }), this.progress.root, this.found);
   }
 
   async study() {
     this.abort?.abort();
     const abort = this.abort = new AbortController();
-    this.error.textContent = "";
+    for (const control of this.controls.values()) control.fail("");
+    this.found.replaceChildren();
     this.progress.root.hidden = false;
-    this.progress.show({ words: "Waiting for its turn", fraction: 0 });
+    this.progress.show({ words: "Waiting for its turn" });
+    const work = { kind: "sunlight", state: this.land.document, period: this.period.document };
     try {
-      this.show(await api.job({ kind: "sunlight", state: this.store.document, period: this.period() }, (progress) => this.progress.show(progress), abort.signal));
+      this.show(await api.job(work, (progress) => this.progress.show(progress), abort.signal));
     } catch (error) {
-      if (error.name !== "AbortError") this.error.textContent = error.message;
+      const control = this.controls.get(error.errors?.[0].field);
+      if (control) control.fail(api.sentence({ ...error.errors[0], field: "" }));
+      else if (error.name !== "AbortError") this.found.replaceChildren(el("p", { class: "field-error", text: error.message }));
     } finally {
       if (this.abort === abort) this.progress.root.hidden = true;
     }
   }
 
-  /** The maps, one at a time, with their scale and the value under the pointer. */
+  /** Both maps, north up, each with its scale and its files. */
   show(result) {
     const { arguments: { start, end }, size_m: [width, height], notes, hours_on_a_plain: plain } = result.meta;
-    const map = el("img", { class: "map" });
-    map.style.aspectRatio = width / height;
-    map.style.width = `min(100%, ${TALLEST * width / height}dvh)`;
-    const bar = el("span", { class: "scale-bar" });
-    const ends = el("span", { class: "scale-ends" });
-    const line = el("output", { class: "hint-facts" });
-    const files = el("p", { class: "hint-facts" });
-    const { radios, group } = segments("Map", MAPS, async (name) => {
+    const map = (name, title) => {
       const { lowest, mean, highest, colours, unit } = result[name];
-      const words = unit.replace("m-2", "m⁻²");
-      const rest = `${start} to ${end}: ${round(mean)} ${words} in the mean`;
-      Object.assign(map, { src: result.files[`${name}.png`], alt: `Map of ${name}, north up: ${round(lowest)} to ${round(highest)} ${words}` });
-      bar.style.background = `linear-gradient(90deg, ${colours})`;
-      ends.replaceChildren(...[lowest, (lowest + highest) / 2, highest].map((value) => el("span", { text: `${round(value)} ${words}` })));
-      line.textContent = rest;
-      files.replaceChildren(...["tif", "png", "npy"].flatMap((suffix) => [el("a", { href: result.files[`${name}.${suffix}`],
-        download: `${name}_${start}_${end}.${suffix}`, text: { tif: "GeoTIFF", png: "PNG", npy: "NumPy array" }[suffix] }), " "]));
-      map.onpointermove = map.onpointerleave = null;
-      const { values, columns } = await numbersOf(result.files[`${name}.npy`]);
-      map.onpointermove = ({ offsetX, offsetY }) => {
-        const column = Math.floor((offsetX / map.clientWidth) * columns);
-        const row = Math.floor((offsetY / map.clientHeight) * (values.length / columns));
-        const value = values[row * columns + column];
-        line.textContent = value >= 0 ? `Here ${round(value)} ${words}` : "Under trees";
-      };
-      map.onpointerleave = () => { line.textContent = rest; };
-    });
-    this.found.replaceChildren(group, map, bar, ends, line, files,
-      el("p", { class: "hint-facts", text: `A plain would have ${round(plain)} h. Assumed: ${notes.join("; ")}.` }));
-    radios[0].click();
-    this.found.scrollIntoView({ block: "nearest" });
+      const said = (value) => `${Number(value.toPrecision(3))} ${unit.replace("m-2", "m⁻²")}`;
+      const link = (suffix, text) => el("a", { href: result.files[`${name}.${suffix}`], download: `${name}_${start}_${end}.${suffix}`, text });
+      return [el("h3", { text: `${title}, ${said(mean)} in the mean` }),
+        el("img", { class: "map", src: result.files[`${name}.png`], alt: `Map of ${name}, north up`,
+          style: { aspectRatio: width / height, width: `min(100%, ${(TALLEST * width) / height}dvh)` } }),
+        ...scaleBar(colours, [lowest, (lowest + highest) / 2, highest].map(said)),
+        quiet(link("tif", "GeoTIFF"), " ", link("png", "PNG"), " ", link("npy", "NumPy"))];
+    };
+    this.found.replaceChildren(...map("hours", "Hours of sun"), ...map("insolation", "Insolation"),
+      quiet(`A plain would have ${plain} h. Assumed: ${notes.join("; ")}.`));
+    this.found.scrollIntoView({ block: "start" });
   }
 }

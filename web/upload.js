@@ -65,7 +65,8 @@ export class Upload {
     try {
       this.preview(file, await api.upload(file, reading));
     } catch (error) {
-      const way = Object.keys(reading).length ? null : (error.errors ?? []).map(({ allowed }) => mendedBy(allowed)).find(Boolean);
+      const allowed = (error.errors ?? []).map((refusal) => refusal.allowed).join();
+      const [, way] = Object.keys(reading).length ? [] : Object.entries(MENDED).find(([words]) => allowed.includes(words)) ?? [];
       if (way) this.offer(file, error.message, way);
       else this.notices.toast(`${file.name} was refused. ${error.message}`, "refusal");
     } finally {
@@ -141,11 +142,6 @@ class Reading {
     }
     return found;
   }
-}
-
-/** The way to read a file that a refusal names, if there is one. */
-function mendedBy(allowed) {
-  return Object.entries(MENDED).find(([words]) => (allowed ?? "").includes(words))?.[1];
 }
 
 /** A fact of the preview in one line. */

@@ -42,7 +42,7 @@ class SunlightPeriod(Model):
         label="From",
         help="First day, of the local calendar.",
         unit="date",
-        cost="bake",
+        cost="host",
         pattern=r"^\d{4}-\d{2}-\d{2}$",
         max_length=10,
     )
@@ -51,29 +51,29 @@ class SunlightPeriod(Model):
         label="To",
         help="Last day; it counts, too.",
         unit="date",
-        cost="bake",
+        cost="host",
         pattern=r"^\d{4}-\d{2}-\d{2}$",
         max_length=10,
     )
     minutes: int = param(
-        15, label="Step", help="Minutes that each position of the sun stands for.", cost="bake", ge=1, le=60
+        15, label="Step", help="Minutes that each position of the sun stands for.", cost="host", ge=1, le=60
     )
     time_zone: str = param(
         "UTC",
         label="Time zone",
         help="Whose midnights the days begin at, as Europe/Paris.",
-        cost="bake",
+        cost="host",
         max_length=64,
     )
     latitude: float | None = param(
-        None, label="Latitude", help="Degrees north; left out, the land's own.", unit="deg", cost="bake", ge=-90, le=90
+        None, label="Latitude", help="Degrees north; left out, the land's own.", unit="deg", cost="host", ge=-90, le=90
     )
     longitude: float | None = param(
         None,
         label="Longitude",
         help="Degrees east; left out, the land's own.",
         unit="deg",
-        cost="bake",
+        cost="host",
         ge=-180,
         le=180,
     )
@@ -82,13 +82,13 @@ class SunlightPeriod(Model):
         label="On",
         help="What the sun falls on: ground between trees, the top of the trees and what lies between, or bare ground, "
         "as if no tree stood.",
-        cost="bake",
+        cost="host",
     )
     turbidity: float = param(
         3.0,
         label="Turbidity",
         help="Linke's, at air mass 2: how many clean dry atmospheres dim as much; 2 in mountains, 5 over cities.",
-        cost="bake",
+        cost="host",
         ge=1,
         le=10,
         source="Ineichen and Perez 2002",

@@ -61,7 +61,7 @@ def _height(surface, row, column):
     return _between(north, south, v)
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def _start(surface, row, column, i, j, down, right, low, guess):
     """Horizon before the walk: at least `low`, the node's own slope, and what stands at the distance guessed."""
     eye = float(surface[row, column])
@@ -84,7 +84,7 @@ def _onward(cell, reached, forward):
     return max(cell, reached) if forward > 0.0 else min(cell, reached)
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def _horizon(surface, tops, starts, widths, row, column, down, right, low, high, guess):
     """Slope of the horizon from a node, where it lies between `low` and `high`.
 
@@ -93,9 +93,8 @@ def _horizon(surface, tops, starts, widths, row, column, down, right, low, high,
 
     Args:
         surface: (rows, columns) m. tops, starts, widths: its pyramid.
-        row, column: the node. down, right: grid units a metre along the ray.
-        low, high: slopes below and above which the answer does not matter.
-        guess: a distance at which the horizon may be [m], 0 for none.
+        row, column: the node. down, right: grid units a metre along the ray. low, high: slopes below and above which
+            the answer does not matter. guess: a distance at which the horizon may be [m], 0 for none.
 
     Returns:
         the slope, at least `low`; the distance where it was met [m], or `guess`.
@@ -109,7 +108,8 @@ def _horizon(surface, tops, starts, widths, row, column, down, right, low, high,
     best, where = _start(surface, row, column, i, j, down, right, low, guess), guess
     last = len(widths) - 1
     highest = tops[starts[last]] - eye
-    next_row, next_column = (1 if down > 0.0 else 0), (1 if right > 0.0 else 0)
+    next_row, next_column = int(down > 0.0), int(right > 0.0)
+    a_row, a_column = 1.0 / down, 1.0 / right  # metres; unused where the ray keeps its row or its column
     distance, level = 0.0, 0
     while best < high and highest > best * distance:
         block_row, block_column = i >> level, j >> level
@@ -120,8 +120,8 @@ def _horizon(surface, tops, starts, widths, row, column, down, right, low, high,
             continue
         line_row = min((block_row + next_row) << level, rows - 1)
         line_column = min((block_column + next_column) << level, columns - 1)
-        to_row = (line_row - row) / down if down != 0.0 else math.inf
-        to_column = (line_column - column) / right if right != 0.0 else math.inf
+        to_row = (line_row - row) * a_row if down != 0.0 else math.inf
+        to_column = (line_column - column) * a_column if right != 0.0 else math.inf
         distance = min(to_row, to_column)
         if hides:
             if to_row <= to_column:
@@ -159,7 +159,7 @@ def _first_above(tangents, first, last, slope):
     return first
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def light(surface, levels, nodes, normals, share, steps, firsts, tangents, sums, directions, diffuse, result):
     """Hours, irradiation and visible sky of some nodes.
 
