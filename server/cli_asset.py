@@ -131,6 +131,8 @@ def _kept(path: str, value: Any, sets: Mapping[str, Any], assets: AssetStore) ->
     if not isinstance(value, str) or not value or IS_ASSET.fullmatch(value):
         return value
     file = Path(value).expanduser()
+    if " " in value and not file.is_file():
+        return " ".join(_kept(path, one, sets, assets) for one in value.split())
     if not file.is_file():
         raise InputError(path, f"{value} is neither a file nor an asset", "the name of a file, or asset:HASH")
     parent, _, name = path.rpartition(".")

@@ -10,12 +10,13 @@ import pytest
 import trimesh
 
 from renderer.core.cache import AssetStore
-from renderer.core.errors import InputError
-from renderer.core.params import bake_arguments
+from renderer.core.errors import InputError, InvalidDocument
+from renderer.core.params import bake_arguments, validate
 from renderer.forest.ground import square
-from renderer.forest.nursery import nursery
+from renderer.forest.nursery import nursery, own_trees
 from renderer.forest.state import Canopy, UserTerrain
 from renderer.session import Session
+from renderer.world.mesh import load_mesh
 from renderer.world.terrain import TerrainReading
 
 HILL = (np.hypot(*np.mgrid[-30:31, -40:41]) * -2).astype(np.float32)
@@ -89,6 +90,25 @@ def test_a_tree_of_ones_own_is_planted(store: AssetStore, tmp_path: Path, ending
     assert (len(trees), shares.sum()) == (1, 1.0)
     heights = trees[0].vertices[:, 2]
     assert (heights.min(), heights.max()) == pytest.approx((0.0, 18.0), abs=0.01)
+
+
+def test_several_trees_keep_their_sizes_beside_one_another(store: AssetStore, tmp_path: Path) -> None:
+    tall, small = (trimesh.creation.cone(1, height) for height in (9, 3))
+    names = []
+    for number, mesh in enumerate((tall, small)):
+        path = tmp_path / f"tree{number}.ply"
+        path.write_bytes(mesh.export(file_type="ply"))
+        names.append(f"asset:{store.put(path.read_bytes(), 'mesh', path.name)}")
+    trees, shares, kinds = nursery(bake_arguments(Canopy(mesh=" ".join(names))))
+    assert [tree.height for tree in trees] == pytest.approx([18.0, 6.0], abs=0.01)
+    assert shares.tolist() == [0.5, 0.5]
+    assert len(set(kinds)) == 2
+    own_trees([load_mesh(tmp_path / "tree0.ply")])
+    (tmp_path / "shrub.ply").write_bytes(trimesh.creation.cone(0.3, 0.5).export(file_type="ply"))
+    with pytest.raises(InputError, match=r"number 2 is 0\.5 tall.*same unit"):
+        own_trees([load_mesh(tmp_path / name) for name in ("tree0.ply", "shrub.ply")])
+    with pytest.raises(InvalidDocument):
+        validate(Canopy, {"mesh": " ".join(names[:1] * 9)})
 
 
 def test_what_was_said_beside_a_file_comes_back_with_it(store: AssetStore, tmp_path: Path) -> None:

@@ -1,7 +1,8 @@
-"""The meshes from which a pattern is planted: built-in species by weight, or the user's own tree."""
+"""The meshes from which a pattern is planted: built-in species by weight, or the user's own trees."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -16,7 +17,10 @@ VARIANTS = 4
 """Trees grown of each species."""
 
 OWN_HEIGHT = 18.0
-"""Height [m] to which a user's tree is scaled."""
+"""Height [m] to which the tallest of a user's trees is scaled."""
+
+OWN_LEAST = 2.5
+"""Least height [m] of any of several trees of a user's: four voxels."""
 
 OWN_REACH = 6.5
 """Widest reach [m] of a user's tree: an offset to the foot is stored in a byte (8 m), and a tile holds no wider
@@ -30,7 +34,8 @@ def nursery(arguments: dict[str, Any]) -> tuple[list[Tree], np.ndarray, list[int
     """Grow the trees of a canopy, or take the user's own.
 
     Args:
-        arguments: the document's `canopy`: `mesh` and its `reading`, else the weights of the species by name; `seed`.
+        arguments: the document's `canopy`: `mesh`, one or several, and their `reading`, else the weights of the species
+        by name; `seed`.
 
     Returns:
         The meshes, their shares (n,) summing to 1, and the number of each one's species.
@@ -39,12 +44,8 @@ def nursery(arguments: dict[str, Any]) -> tuple[list[Tree], np.ndarray, list[int
         InputError: no species has any weight, or the uploaded mesh cannot serve as a tree.
     """
     if arguments.get("mesh"):
-        try:
-            reading = MeshReading.model_validate(arguments.get("reading", {}))
-            mesh = load_mesh(AssetStore().get(str(arguments["mesh"]).removeprefix("asset:")).path, reading=reading)
-        except InputError as failure:
-            raise failure.at("canopy.mesh") from None
-        return [own_tree(mesh)], np.ones(1), [len(species())]
+        own = own_trees([_mesh(asset, arguments) for asset in str(arguments["mesh"]).split()])
+        return own, np.full(len(own), 1 / len(own)), [len(species()) + number for number in range(len(own))]
     meshes: list[Tree] = []
     shares: list[float] = []
     kinds: list[int] = []
@@ -61,9 +62,37 @@ def nursery(arguments: dict[str, Any]) -> tuple[list[Tree], np.ndarray, list[int
     return meshes, np.array(shares) / sum(shares), kinds
 
 
-def own_tree(mesh: Mesh) -> Tree:
-    """A user's mesh as a tree: its foot at the origin, scaled to OWN_HEIGHT, or less where its crown would be too
-    wide.
+def _mesh(asset: str, arguments: dict[str, Any]) -> Mesh:
+    try:
+        reading = MeshReading.model_validate(arguments.get("reading", {}))
+        return load_mesh(AssetStore().get(asset.removeprefix("asset:")).path, reading=reading)
+    except InputError as failure:
+        raise failure.at("canopy.mesh") from None
+
+
+def own_trees(meshes: Sequence[Mesh]) -> list[Tree]:
+    """A user's meshes as trees of one forest: the tallest of OWN_HEIGHT, the others as tall beside it.
+
+    Raises:
+        AssetError: one has no height, or would be no taller than a shrub. LimitError: one has too many triangles.
+    """
+    heights = [float(np.ptp(mesh.vertices[np.unique(mesh.faces)][:, 2])) for mesh in meshes]
+    made = []
+    for number, (mesh, height) in enumerate(zip(meshes, heights, strict=True), start=1):
+        wanted = OWN_HEIGHT * height / max(*heights, 1e-30)
+        if 0 < wanted < OWN_LEAST:
+            raise AssetError(
+                "canopy.mesh",
+                f"number {number} is {height:g} tall, where the tallest is {max(heights):g}",
+                f"at least {OWN_LEAST / OWN_HEIGHT:.0%} of the tallest: are both in the same unit?",
+            )
+        made.append(own_tree(mesh, wanted))
+    return made
+
+
+def own_tree(mesh: Mesh, wanted: float = OWN_HEIGHT) -> Tree:
+    """A user's mesh as a tree: its foot at the origin, scaled to the wanted height [m], or less where its crown would
+    be too wide.
 
     Raises:
         AssetError: the mesh has no height.
@@ -79,6 +108,6 @@ def own_tree(mesh: Mesh) -> Tree:
     foot = used[used[:, 2] <= low + 0.05 * height].mean(axis=0)
     vertices = mesh.vertices - [foot[0], foot[1], low]
     reach = float(np.hypot(*(used - foot)[:, :2].T).max())
-    scale = min(OWN_HEIGHT / height, OWN_REACH / max(reach, 1e-9))
+    scale = min(wanted / height, OWN_REACH / max(reach, 1e-9))
     wood = np.zeros(len(mesh.faces), bool)
     return Tree(vertices * scale, mesh.faces.astype(np.int64), mesh.face_colour.astype(np.float32), wood)

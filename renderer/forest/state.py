@@ -163,10 +163,10 @@ class Canopy(Model):
     )
     mesh: str = param(
         "",
-        label="Own tree",
-        help="An uploaded mesh, as asset:HASH; it replaces the built-in species.",
+        label="Own trees",
+        help="Uploaded meshes, as asset:HASH, up to eight with spaces between; they replace the built-in species.",
         cost="bake",
-        pattern=r"^(asset:[0-9a-f]{64})?$",
+        pattern=r"^(asset:[0-9a-f]{64}( asset:[0-9a-f]{64}){0,7})?$",
     )
     reading: MeshReading = param(
         MeshReading(), label="Reading of the own tree", help="What its file leaves unsaid.", cost="bake"

@@ -53,7 +53,7 @@ def bilinear_cells(elevation: np.ndarray) -> tuple[np.ndarray, tuple[float, floa
 
 
 def stand_texture(presence: np.ndarray) -> np.ndarray:
-    """Share of the trees that stand (0 to 255) and how far the next one may be [m], (P, P, 2) uint8, row 0 at the south.
+    """Share of the trees that stand (of 255) and metres to the next one at least, (P, P, 2) uint8, row 0 at the south.
 
     Filtered between its texels, as the truth is.
     """
