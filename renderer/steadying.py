@@ -138,6 +138,22 @@ def _aside(state: SceneState, share: float) -> SceneState:
     return state.model_copy(update={"camera": camera.model_copy(update=moved)})
 
 
+def with_choice(session: Session, plan: Plan, state: SceneState, choice: Choice) -> SceneState:
+    """A place of a sweep with a technique in the slot that is studied.
+
+    Raises:
+        InputError: the technique has no such parameter.
+    """
+    document = state.model_dump(mode="json")
+    own = document[plan.slot]
+    kept = own if own["kind"] == choice.kind and plan.sweep.startswith(f"{plan.slot}.") else {}
+    document[plan.slot] = {**kept, "kind": choice.kind, **choice.parameters}
+    try:
+        return session.validate(document)
+    except InvalidDocument as failure:
+        raise InputError("techniques", f"{choice.label}: {failure}") from None
+
+
 @dataclass
 class Steadying:
     """One sweep under way, which keeps its references.
@@ -158,7 +174,7 @@ class Steadying:
         sweep = places(self.session, self.plan)
         found = []
         for number, choice in enumerate(self.plan.choices):
-            states = [self._with(state, choice) for state in sweep]
+            states = [with_choice(self.session, self.plan, state, choice) for state in sweep]
             key = self._key(states)
             if key not in known:
                 line = self._line(choice, states, number, folder)
@@ -205,16 +221,6 @@ class Steadying:
         folder.mkdir(parents=True, exist_ok=True)
         name = re.sub(r"\W+", "_", f"{self.plan.preset} {self.plan.sweep} {choice.label}")
         (folder / f"{name}.png").write_bytes(save_image("png", strip(shown[0], shown[1], found)))
-
-    def _with(self, state: SceneState, choice: Choice) -> SceneState:
-        document = state.model_dump(mode="json")
-        own = document[self.plan.slot]
-        kept = own if own["kind"] == choice.kind and self.plan.sweep.startswith(f"{self.plan.slot}.") else {}
-        document[self.plan.slot] = {**kept, "kind": choice.kind, **choice.parameters}
-        try:
-            return self.session.validate(document)
-        except InvalidDocument as failure:
-            raise InputError("techniques", f"{choice.label}: {failure}") from None
 
     def _key(self, states: Sequence[SceneState]) -> str:
         """Changes when a picture or a reference of the sweep may."""

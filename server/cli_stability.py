@@ -1,8 +1,11 @@
-"""The command that measures how steady pictures are while something moves: stability."""
+"""Commands that measure where techniques fail: stability while something moves, and the catalogue of failures."""
 
 from __future__ import annotations
 
 import argparse
+import json
+from collections.abc import Mapping
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -34,8 +37,13 @@ def add(commands: Any) -> None:
     command.add_argument("--set", metavar="PATH=VALUE", action="append", default=[], help="change the preset")
     command.add_argument("--width", type=int, default=128, help="of the pictures, px (default %(default)s, as stated)")
     command.add_argument("--steps", type=int, default=16, help="of each sweep (default %(default)s, as stated)")
-    command.add_argument("--docs", action="store_true", help="copy table and chart into docs/stability")
+    command.add_argument("--docs", action="store_true", help="copy table and chart into docs/study")
     command.set_defaults(run=stability)
+    command = commands.add_parser("failures", help="where techniques fail, why, and what survives there")
+    command.add_argument("scene", metavar="SCENE")
+    command.add_argument("--measure", metavar="NAME,..", default="", help="measure them today: all, or names")
+    command.add_argument("--json", action="store_true", help="as JSON")
+    command.set_defaults(run=list_failures)
 
 
 def stability(given: argparse.Namespace) -> int:
@@ -55,17 +63,53 @@ def stability(given: argparse.Namespace) -> int:
             for preset in names_of("--presets", given.presets, every) or every[:1]
             for sweep in given.sweep.split(",")
         ]
-        folder = Path(load().study) / "stability" / given.scene
+        folder = Path(load().study) / given.scene / "stability"
         tell = Teller(given.scene)
         try:
             steadying.run(session, plans, folder, tell)
         finally:
             tell.bar.close()
     if given.docs:
-        keep(folder, DOCS / "stability" / given.scene, KEPT)
+        keep(folder, DOCS / "study" / given.scene / "stability", KEPT)
     print((folder / "table.md").read_text(encoding="utf-8"), end="")
     print(f"{folder}: results.jsonl, table.md, flicker.png .svg; worst/ holds the frames of each worst step")
     return 0
+
+
+def list_failures(given: argparse.Namespace) -> int:
+    """List the cases of a scene's catalogue; measured today, they go beside the study, which HTTP serves."""
+    from renderer import failing
+
+    cases = failing.failures(given.scene)
+    found = [{**asdict(case), "failing_now": None, "surviving_now": None, "holds": None} for case in cases.values()]
+    if given.measure:
+        wanted = names_of("--measure", given.measure, tuple(cases))
+        tell = Teller(given.scene)
+        try:
+            with Session() as session:
+                found = [failing.judge(session, given.scene, name, tell).document() for name in wanted]
+        finally:
+            tell.bar.close()
+        path = Path(load().study) / given.scene / "failures.json"
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(json.dumps(found, indent=1), encoding="utf-8")
+    print(json.dumps(found, indent=1) if given.json else "\n\n".join(map(_told, found)))
+    return 0 if all(one["holds"] is not False for one in found) else 1
+
+
+def _told(case: Mapping[str, Any]) -> str:
+    """A case as lines."""
+    moving = f", {case['sweep']} moving" if case["sweep"] else ""
+    today = [case["failing_now"], case["surviving_now"]]
+    failing, surviving = today if case["holds"] is not None else case["measured"]
+    verdict = {None: "", True: " (measured now)", False: " (measured now: the case no longer holds)"}[case["holds"]]
+    return (
+        f"{case['name']}: {case['title']}\n"
+        f"  {case['preset']}{moving}: {case['symptom']} above {case['threshold']:g} is a failure{verdict}\n"
+        f"  {failing:.3g} {case['failing']}\n"
+        f"  {surviving:.3g} {case['surviving']}\n"
+        f"  {case['cause']}"
+    )
 
 
 def pair_of(text: str) -> tuple[str, Any]:

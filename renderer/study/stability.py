@@ -25,6 +25,9 @@ STEPS = 16
 WIDTH = 128
 """Pixels across of the stated figures."""
 
+SHOWN = 256
+"""Pixels across, at least, of each picture of a strip."""
+
 Pictures = Sequence[NDArray[np.floating]]
 
 
@@ -100,7 +103,8 @@ def chart(lines: Sequence[Mapping[str, Any]], title: str) -> Figure:
     sweeps = list(dict.fromkeys(f"{line['preset']}, {line['sweep']}" for line in lines))
     labels = list(dict.fromkeys(line["label"] for line in lines))
     figure = Figure(figsize=(3 + 1.1 * len(sweeps) * max(2, len(labels) / 2), 4.5), layout="constrained")
-    axes = figure.add_subplot(title=title, ylabel="flicker, relative to the reference's mean", yscale="log")
+    figure.suptitle(title)
+    axes = figure.add_subplot(ylabel="flicker, relative to the reference's mean", yscale="log")
     width = 0.8 / len(labels)
     for number, label in enumerate(labels):
         held = [(sweeps.index(f"{one['preset']}, {one['sweep']}"), one) for one in lines if one["label"] == label]
@@ -121,12 +125,14 @@ def strip(before: NDArray[np.uint8], after: NDArray[np.uint8], found: Flicker, t
         top: value at which the signed scale (blue darker, red brighter) saturates; its 99th percentile where 0.
 
     Returns:
-        (H, 3 W, 3) uint8.
+        (H, 3 W, 3) uint8, each pixel drawn as often as makes a picture at least `SHOWN` wide.
     """
     limit = top or max(float(np.percentile(np.abs(found.map), 99)), 1e-4)
     scaled = np.clip(found.map / limit, -1, 1) / 2 + 0.5
     coloured = matplotlib.colormaps["RdBu_r"](scaled, bytes=True)[..., :3]
-    return np.ascontiguousarray(np.concatenate([before, after, coloured], axis=1), np.uint8)
+    whole = np.concatenate([before, after, coloured], axis=1)
+    larger = -(-SHOWN // before.shape[1])
+    return np.ascontiguousarray(whole.repeat(larger, axis=0).repeat(larger, axis=1), np.uint8)
 
 
 def write(lines: Sequence[Mapping[str, Any]], folder: Path, title: str) -> None:

@@ -9,13 +9,16 @@
 
 const float NEVER = -1e9;
 
+// Coarser levels would fill most of the layer's height with one voxel, and hide the sun from the treetops.
+const float COARSEST = 3.0;
+
 float first_sunward(vec2 line, float texel, float threshold) {
     vec3 across = line.x * shadow_right + line.y * shadow_up;
     float begin = min((scene_top - across.z) / max(sun_direction.z, 1e-4), shadow_away);
     vec3 origin = across + begin * sun_direction;
     vec3 direction = -sun_direction;
     float t = canopy_entry(origin, direction, 0.0);
-    float level = floor(clamp(log2(texel / voxel_size), 0.0, 5.0) + 0.5);
+    float level = floor(clamp(log2(texel / voxel_size), 0.0, COARSEST) + 0.5);
     float ds = voxel_size * exp2(level);
     float rate = voxel_rate(direction) / exp2(level);
     float wanted = -log(1.0 - threshold);

@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+import json
+
 import pytest
 
 from server import cli
@@ -19,3 +21,17 @@ from server import cli
 def test_a_wrong_option_is_named(command: str, words: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert cli.main(command.split()) == cli.REFUSED
     assert words in capsys.readouterr().err
+
+
+def test_failures_are_listed(capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.main(["failures", "forest"]) == 0
+    told = capsys.readouterr().out
+    assert "depth_map_scintillates: A shadow map scintillates while the sun moves" in told
+    assert "low_sun, sun_azimuth moving: flicker above" in told
+    assert cli.main(["failures", "forest", "--json"]) == 0
+    assert {"name", "threshold", "cause"} <= set(json.loads(capsys.readouterr().out)[0])
+
+
+def test_a_case_that_there_is_not_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.main(["failures", "forest", "--measure", "sea_monsters"]) == cli.REFUSED
+    assert "--measure: sea_monsters is not known" in capsys.readouterr().err

@@ -19,6 +19,7 @@ Ask = Callable[..., np.ndarray]
 KIND = "cascaded_shadow_map"
 FIXED = {"resolution": 512, "cascades": 3, "threshold": 0.2, "bias": 0.0, "texel_bias": 0.0, "fade": 1.0}
 """Pinned, so that a tuned default leaves the measured cost alone."""
+COST = 0.067
 PASS = "forest/shadow/cascaded_shadow_map_depth.glsl"
 FRAME = "forest/shadow/cascaded_shadow_map.glsl"
 FAR_VIEW = {"kind": "look", "eye": [0, -100, 60], "target": [0, 300, 0], "field_of_view": 40}
@@ -122,7 +123,7 @@ def test_distance_to_the_reference(judge: Judge) -> None:
         "shadow",
         KIND,
         MARCH,
-        0.067,  # one depth a texel, and light that fades behind it the same everywhere
+        COST,  # one depth a texel, and light that fades behind it the same everywhere
         against="full",
         shadow=worlds.technique("shadow", KIND, **FIXED),
     )
@@ -130,7 +131,7 @@ def test_distance_to_the_reference(judge: Judge) -> None:
 
 def test_a_wrong_threshold_costs_more(judge: Judge) -> None:
     late = {"shadow": worlds.technique("shadow", KIND, **{**FIXED, "threshold": 0.99})}
-    assert judge.distance("shadow", KIND, "full", **late) > 1.1 * (MARCH + 0.043)
+    assert judge.distance("shadow", KIND, "full", **late) > 1.1 * (MARCH + COST)
 
 
 def test_picture(judge: Judge) -> None:
