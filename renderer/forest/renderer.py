@@ -154,9 +154,10 @@ class ForestRenderer:
     def _kept(
         self, slot: str, technique: ForestTechnique, state: ForestState, baked: Baked
     ) -> Mapping[str, AnyTexture]:
-        """The textures of a technique that last as long as the terrain and the pattern."""
+        """The textures of a technique that last as long as what was baked."""
         arrays = {name: entry.arrays for name, entry in baked.items()}
-        key = (slot, technique.kind, baked["terrain"].key, baked["pattern"].key)  # type: ignore[attr-defined]
+        keys = tuple(sorted(entry.key for entry in baked.values()))
+        key = (slot, technique.kind, keys)  # type: ignore[attr-defined]
         made = self._baked.get(key, lambda: kept_textures(self._gl, slot, technique.kept_textures(state, arrays)))
         return made  # type: ignore[return-value]
 

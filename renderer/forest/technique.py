@@ -67,7 +67,7 @@ class ForestTechnique(Technique):
 
     def kept_textures(self, state: ForestState, baked: Mapping[str, Arrays]) -> dict[str, Sequence[np.ndarray]]:
         """Mip levels (K, J, I) or (K, J, I, C) of its 3D samplers, finest first, over the torus of the atlas: made once
-        for a terrain and a pattern, whatever the sun."""
+        for what was baked, whatever the sun."""
         return {}
 
     def sun_pass(self, state: ForestState, baked: Mapping[str, Arrays], size: tuple[int, int]) -> SunPass | None:

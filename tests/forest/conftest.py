@@ -19,6 +19,7 @@ from renderer.forest.technique import ForestTechnique
 from renderer.gl import source
 from renderer.gl.context import GL
 from renderer.gl.probe import probe
+from renderer.gl.program import AnyTexture
 from renderer.gl.thread import GLThread
 from renderer.picture import Picture
 from tests.forest import worlds
@@ -91,7 +92,7 @@ def _asked(
     baked = worlds.together(sky=worlds.sky(), terrain=terrain or worlds.ground(), pattern=pattern or worlds.uniform(0))
     made = {
         "scout": gl.texture2d(np.zeros((1, 1), np.float32)),
-        **{name: gl.texture2d(np.asarray(a, np.float32), wrap="repeat") for name, a in (textures or {}).items()},
+        **{name: _texture(gl, np.asarray(a)) for name, a in (textures or {}).items()},
     }
     # What the renderer itself gives the world's uniforms and samplers, whatever they are.
     held = drawers[0]._world_textures(state, baked)
@@ -111,6 +112,13 @@ def _asked(
     finally:
         for texture in made.values():
             texture.release()
+
+
+def _texture(gl: GL, array: np.ndarray) -> AnyTexture:
+    """A picture (H, W, ..) in float32, or bytes of a volume (K, J, I, C)."""
+    if array.ndim == 4:
+        return gl.texture3d(array, "linear", ("repeat", "repeat", "clamp"))
+    return gl.texture2d(array.astype(np.float32), wrap="repeat")
 
 
 @pytest.fixture

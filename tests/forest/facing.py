@@ -54,13 +54,13 @@ def sent(
                state=worlds.state(sun=sun), **more)
 
 
-def light_error(ask: Callable[..., np.ndarray], technique: ForestTechnique, twin: Twin) -> float:
+def light_error(ask: Callable[..., np.ndarray], technique: ForestTechnique, twin: Twin, **more: Any) -> float:
     """Worst error of what a light technique sends against `twin(leaves, sun)`, over suns and leaves."""
     worst = 0.0
     for azimuth, elevation in SUNS:
         sun = worlds.sun(azimuth, elevation)
         leaves = drawn()
-        found = sent(ask, technique, leaves, sun)
+        found = sent(ask, technique, leaves, sun, **more)
         assert (found >= 0).all()
         towards = np.asarray(direction(worlds.state(sun=sun).sun))
         worst = max(worst, float(np.abs(found - twin(leaves, towards)).max()))

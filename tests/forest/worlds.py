@@ -116,6 +116,7 @@ PINNED: dict[str, dict[str, Any]] = {
     "sun_march": {"step": 1.0, "width": 0.5, "growth": 0.4, "bias": -2.0, "stop": 0.02},
     "empirical": {"strength": 1.0, "foot": 0.5, "rise": 1.0},
     "gouraud": {"strength": 1.0},
+    "lafortune": {"coefficients": "averaged"},
     "constant": {"tint": (0.3, 0.5, 0.6), "share": 0.3},
     "mipmap": {"bias": 0.0},
 }
