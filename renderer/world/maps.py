@@ -17,7 +17,7 @@ from renderer.world.limits import DEFAULT_LIMITS, Limits, check_file
 from renderer.world.terrain_files import read_raster, terrain_format
 from renderer.world.terrain_grid import TerrainReading
 
-QUANTITIES = ("density", "species")
+QUANTITIES = ("density",)
 """Names of the arrays that an .npz may hold as a map."""
 
 
@@ -73,9 +73,3 @@ def spread(values: np.ndarray, count: int) -> np.ndarray:
     smooth = ndimage.gaussian_filter(values, [max(0.0, (r - 1) / 2) for r in ratio], mode="nearest")
     at = np.meshgrid(*((np.arange(count) + 0.5) * r - 0.5 for r in ratio), indexing="ij")
     return np.asarray(ndimage.map_coordinates(smooth, at, order=1, mode="nearest"))
-
-
-def nearest(values: np.ndarray, count: int) -> np.ndarray:
-    """A map of kinds, which cannot be mixed, over a square of `count` x `count` places."""
-    rows, columns = ((np.arange(count) + 0.5) * (length / count) for length in values.shape)
-    return np.asarray(values[rows.astype(int)[:, None], columns.astype(int)])

@@ -27,11 +27,11 @@ Kind = Literal["terrain", "mesh", "volume", "image", "map"]
 
 READ = (
     f"a terrain (GeoTIFF, 16-bit grey PNG, .npz with elevation), a mesh ({MESH_FORMATS}), a volume (.npz with rgba), "
-    "a map (.npz with density or species), "
+    "a map (.npz with density), "
     "or a picture (PNG, JPEG, HDR, EXR, .npy)"
 )
 
-WANTED = "elevation (a terrain), rgba (a volume), density or species (a map)"
+WANTED = "elevation (a terrain), rgba (a volume) or density (a map)"
 """Arrays of which an .npz must have one."""
 
 REFUSED = {

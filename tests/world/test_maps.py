@@ -10,7 +10,7 @@ from PIL import Image
 
 from renderer.core.errors import AssetError, LimitError
 from renderer.world.limits import Limits
-from renderer.world.maps import load_map, nearest, spread
+from renderer.world.maps import load_map, spread
 from renderer.world.upload import check_in_worker, recognise
 from tests.world.geotiff import tiff
 
@@ -75,10 +75,3 @@ def test_a_map_stretched_keeps_its_mean_and_its_north() -> None:
     np.testing.assert_allclose(spread(ramp, 40), ramp, atol=1e-12)
     dots = np.indices((64, 64)).sum(axis=0) % 2.0
     assert np.ptp(spread(dots, 8)) < 0.05, "no detail aliases"
-
-
-def test_kinds_are_never_mixed() -> None:
-    made = nearest(np.array([[0, 7], [3, 5]]), 6)
-    assert set(np.unique(made)) == {0, 3, 5, 7}
-    assert made[0, 5] == 7
-    assert made[5, 0] == 3
