@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from renderer.core.registry import phenomenon, techniques
+from renderer.study.horizon_bench import time_horizons
 from renderer.study.sweep import FRAMES, Case, clock, provenance
 from renderer.study.yardstick import Yardstick
 from renderer.world.state import SceneState, View
@@ -16,7 +17,7 @@ from renderer.world.sun import SunDirection, angles
 if TYPE_CHECKING:
     from renderer.session import Session
 
-__all__ = ["FRAMES", "provenance", "time_frames"]
+__all__ = ["FRAMES", "provenance", "time_frames", "time_horizons"]
 
 Progress = Callable[[float, str], None]
 

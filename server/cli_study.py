@@ -129,7 +129,6 @@ def keep(folder: Path, docs: Path, names: tuple[str, ...]) -> None:
 def bench(given: argparse.Namespace) -> int:
     """Time everything, in one run on this machine, and write JSON lines, a table and the documentation's pictures."""
     from renderer import benching
-    from renderer.study.horizon_bench import time_horizons
     from server import bench_report
 
     parts = names_of("--parts", given.parts, PARTS)
@@ -151,7 +150,7 @@ def bench(given: argparse.Namespace) -> int:
                     session, given.scene, results, machine, given.frames, presets, tell
                 )
             if "horizons" in parts:
-                found["horizons"] = time_horizons(progress=tell)
+                found["horizons"] = benching.time_horizons(progress=tell)
             found |= _doors(session, first, parts, tell)
             if "pictures" in parts:
                 found["pictures"] = _pictures(session, given.scene, presets, tell)

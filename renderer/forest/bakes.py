@@ -49,7 +49,7 @@ def canopy_horizon_bake(pattern: Bake, sectors: int, heights: list[float]) -> Ba
 
 def soft_horizon_bake(pattern: Bake, sectors: int, heights: list[float]) -> Bake:
     """Soft canopy horizons over the tile at each height."""
-    return Bake("soft_horizon", bake_soft_horizon, {"sectors": sectors, "heights": heights}, (pattern,), seconds=4)
+    return Bake("soft_horizon", bake_soft_horizon, {"sectors": sectors, "heights": heights}, (pattern,), seconds=8)
 
 
 def sky_bake(state: ForestState) -> Bake:
