@@ -7,7 +7,17 @@ import sys
 from collections.abc import Sequence
 
 from renderer.core.errors import InputError, InvalidDocument, UmbrageError
-from server import cli_asset, cli_distance, cli_draw, cli_measure, cli_serve, cli_stability, cli_study, cli_sunlight
+from server import (
+    cli_asset,
+    cli_distance,
+    cli_draw,
+    cli_leaves,
+    cli_measure,
+    cli_serve,
+    cli_stability,
+    cli_study,
+    cli_sunlight,
+)
 
 FAILED, REFUSED, INTERRUPTED = 1, 2, 130
 """Exit codes: something of ours or of the machine, something that was asked wrongly, Ctrl-C."""
@@ -27,6 +37,7 @@ def parser(arguments: Sequence[str]) -> argparse.ArgumentParser:
     cli_sunlight.add(commands, "sunstudy" in arguments)
     cli_study.add(commands)
     cli_stability.add(commands)
+    cli_leaves.add(commands)
     return top
 
 

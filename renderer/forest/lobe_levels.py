@@ -85,10 +85,10 @@ def depths(colour: NDArray[np.uint8]) -> NDArray[np.float32]:
 
 
 def averaged(coefficients: Floats, opacity: Floats) -> Floats:
-    """The children's mean coefficients (K, J, I, 4), weighted by opacity, at half the resolution."""
+    """The children's mean values (K, J, I, n), weighted by opacity, at half the resolution."""
     k, j, i = (size // 2 for size in opacity.shape)
     weight = (opacity + np.float32(1e-4)).reshape(k, 2, j, 2, i, 2)
-    total = (coefficients.reshape(k, 2, j, 2, i, 2, 4) * weight[..., None]).sum(axis=(1, 3, 5))
+    total = (coefficients.reshape(k, 2, j, 2, i, 2, -1) * weight[..., None]).sum(axis=(1, 3, 5))
     result: Floats = total / weight.sum(axis=(1, 3, 5))[..., None]
     return result
 

@@ -11,7 +11,7 @@ import pytest
 
 from renderer.forest import lobe, lobe_levels
 from renderer.forest.light.lafortune import Lafortune
-from renderer.forest.pattern_mips import mips
+from tests.forest.blocks import blocks
 from tests.forest.facing import Leaves, Twin, light_error
 from tests.forest.truth import MARCH, Judge
 
@@ -109,21 +109,6 @@ def test_lobes_keep_energy() -> None:
             sent = lobe.lobe(c, lit, eye[:, 2], cosine) / np.pi
             # Per area of the leaves, all kappas: radiance times what is shown, over what the beam hits at most.
             assert 2 * np.pi * (sent * eye[:, 2]).mean() <= 1.05
-
-
-def blocks(disorder: float) -> dict[str, Any]:
-    """A small pattern whose voxels' leaves lie alike, but differently from voxel to voxel."""
-    rng = np.random.default_rng(8)
-    shape = (8, 16, 16)
-    way = rng.normal(size=(*shape, 3)) * disorder + [0.0, 0.3, 1.0]
-    way /= np.linalg.norm(way, axis=-1, keepdims=True)
-    colour = np.zeros((*shape, 4), np.uint8)
-    colour[...] = (40, 60, 20, 90)
-    normal = np.concatenate([np.rint(way * 127.5 + 127.5), np.full((*shape, 1), 200)], axis=-1).astype(np.uint8)
-    level = {"colour": colour, "normal": normal, "anchor": np.full((*shape, 4), 64, np.uint8)}
-    coarse = mips({name: np.tile(a, (4, 2, 2, 1)) for name, a in level.items()})
-    return {**{name: np.tile(a, (4, 2, 2, 1)) for name, a in level.items()},
-            **{f"{name}_{n}": a for n, given in enumerate(coarse[:2], 1) for name, a in given.items()}}
 
 
 def sent_by_blocks(pattern: dict[str, Any], level: int) -> tuple[np.ndarray, np.ndarray]:
