@@ -99,7 +99,7 @@ def _asked(
     given: dict[str, Any] = {**drawers[0]._world(state, baked), "sun_irradiance": worlds.E_SUN,
                              "sky_irradiance": worlds.E_SKY, "pixel_angle": 0.0, "pixel_width": 0.0}
     for slot, technique in (techniques or {}).items():
-        if not any(f"{slot}_{name}" in made for name in technique.textures):
+        if any(f"{slot}_{name}" not in made for name in technique.textures):
             held |= drawers[0]._kept(slot, technique, state, baked)
     text = [program.WORLD_DECLARATIONS, uniform_declarations(Ground, "ground")]
     for slot, technique in (techniques or {}).items():

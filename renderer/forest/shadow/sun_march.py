@@ -29,14 +29,6 @@ class SunMarch(ForestTechnique):
     step: float = param(
         1.0, label="First step", help="Length of the first step, of the pattern's voxels.", unit="voxel", ge=0.25, le=8
     )
-    width: float = param(
-        0.5,
-        label="Pixels a step",
-        help="Least length of the first step, of the pixel's width: far trees need no fine steps.",
-        unit="px",
-        ge=0,
-        le=8,
-    )
     growth: float = param(
         0.4,
         label="Growth",
@@ -47,7 +39,7 @@ class SunMarch(ForestTechnique):
         source="Crassin et al. 2011, section 5 (cone aperture)",
     )
     bias: float = param(
-        -2.0,
+        -1.5,
         label="Level bias",
         help="Added to the mip level whose voxels are as long as the step; negative is sharper.",
         ge=-4,

@@ -1,10 +1,11 @@
 // Marching the sun's ray through the canopy. Levoy 1990 (early stop); Crassin et al. 2011, section 5 (voxels as wide as the cone); formulas g.
 // Symbols: alpha opacity for one voxel of the level; ds step [m]; tau optical depth, in powers of two; T transmittance 2^-tau;
-// footprint width of the pixel [m]; shadow_voxels opacity, foot east and north, rank of the tree, four bytes of what pattern_voxels holds.
-// Steps begin at shadow_step voxels, or at shadow_width pixels where that is more, and grow by shadow_growth each, and the mip level
-// with them. Each is read at one random place in it, whose mean over rays is the sum along the ray.
+// shadow_voxels opacity, foot east and north, rank of the tree, four bytes of what pattern_voxels holds.
+// Steps begin at shadow_step voxels and grow by shadow_growth each, and the mip level with them. Each is read at one random place in it, whose mean over rays is the sum along the ray.
 // Land: where the ray leaves the canopy it must pass over the shadow of land and stands (land_shadow.py), which is swept for the sun.
 // Does not claim: a step's one voxel stands for all its length, so that a canopy of few opaque voxels lets a little too much light pass.
+
+#include "forest/land_shadow.glsl"
 
 // Interleaved gradient noise of Jimenez 2014 from pixel to pixel, turned by the R5 sequence of Roberts 2018 from sample to sample.
 vec4 sun_jitter() {
@@ -12,24 +13,11 @@ vec4 sun_jitter() {
     return fract(noise * vec4(1.0, 5.0, 11.0, 23.0) + sample_shift * vec4(0.8812714616, 0.7766393890, 0.6844301295, 0.6031687406));
 }
 
-// Whether a ray that has left the canopy at p passes over the land: it must lie above the shadow's upper side.
-// Beyond the square the ray is followed to where it enters it; what stands outside casts nothing.
-float over_land(vec3 p) {
-    float half_side = 0.5 * terrain_cell * (terrain_nodes - 1.0);
-    vec2 to_side = (abs(p.xy) - half_side) * -sign(p.xy * sun_direction.xy) / max(abs(sun_direction.xy), 1e-6);
-    vec2 outside = step(half_side, abs(p.xy));
-    vec3 q = p + max(max(outside.x * to_side.x, outside.y * to_side.y), 0.0) * sun_direction;
-    float misses = step(half_side + 1.0, max(abs(q.x), abs(q.y)));
-    float shade = textureLod(shadow_land, terrain_coordinate(q.xy), 0.0).r;
-    return max(misses, smoothstep(-0.5, 0.5, q.z - shade)) * step(0.0, sun_elevation);
-}
-
 // Formulas g: tau = -sum log2(1 - alpha) ds / voxel.
 float shadow_visibility(vec3 position, float h, vec2 uv) {
     vec4 jitter = sun_jitter();
     vec3 offset = voxel_offset(jitter);
-    float footprint = length(position - camera_origin) * pixel_angle + pixel_width;
-    float ds = max(shadow_step * voxel_size, shadow_width * footprint);
+    float ds = shadow_step * voxel_size;
     float limit = -log2(max(shadow_stop, 1e-6));
     float start = 0.0;
     float tau = 0.0;

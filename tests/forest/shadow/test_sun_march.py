@@ -11,7 +11,6 @@ import pytest
 from renderer.forest.land_shadow import land_shadow, shadow_height
 from renderer.forest.shadow.sun_march import SunMarch
 from renderer.forest.world_scale import VOXEL
-from renderer.world.camera import CAMERA_DECLARATIONS
 from tests.forest import worlds
 from tests.forest.truth import MARCH, Judge
 
@@ -30,8 +29,7 @@ def seen(ask: Ask, made: SunMarch, sun: dict[str, Any], position: np.ndarray, *,
     height = position[:, 2] / 20
     return ask([FILE], "shadow_visibility(position, h, vec2(0.0))", {"position": position, "h": height}, state=state,
                terrain=ground, pattern=worlds.uniform(alpha), techniques={"shadow": made},
-               textures={"shadow_land": land_shadow(ground, (azimuth, elevation))}, declarations=CAMERA_DECLARATIONS,
-               values={"sample_shift": 0.0, "camera_origin": (0.0, 0.0, 0.0)})[:, 0]
+               textures={"shadow_land": land_shadow(ground, (azimuth, elevation))}, values={"sample_shift": 0.0})[:, 0]
 
 
 def beer_error(ask: Ask, **parameters: float) -> float:
@@ -53,7 +51,7 @@ def test_an_even_canopy_dims_as_beer_and_lambert_say(ask: Ask) -> None:
 
 
 def test_growing_steps_keep_the_law(ask: Ask) -> None:
-    assert beer_error(ask, step=2.0, growth=0.4) < 0.02
+    assert beer_error(ask, step=2.0, growth=0.4) < 0.025
 
 
 @pytest.mark.parametrize(("right", "wrong"), [
@@ -103,7 +101,7 @@ def test_a_plateaus_shadow_ends_where_geometry_says(ask: Ask) -> None:
 
 
 def test_a_shadow_of_the_wrong_height_is_found(ask: Ask, spoil: Callable) -> None:
-    with spoil(FILE, "q.z - shade", "q.z - shade + 5.0"):
+    with spoil("forest/land_shadow.glsl", "q.z - shade", "q.z - shade + 5.0"):
         assert brink_error(ask) > 5
 
 
@@ -143,15 +141,14 @@ def test_distance_to_the_reference(judge: Judge) -> None:
         "shadow", "sun_march",
         MARCH,
         0.012,  # a random place of each voxel, and half a metre of the land's edge
-        0.024,  # steps that grow by 0.4 each, from one voxel on
-        0.007,  # a first step of at least half a pixel
+        0.034,  # steps that grow by 0.4 each, from one voxel on
         against="full",
     )
 
 
 def test_longer_steps_cost_more(judge: Judge) -> None:
     coarse = {"shadow": worlds.technique("shadow", "sun_march", step=8.0, growth=1.0, bias=1.0)}
-    assert judge.distance("shadow", "sun_march", "full", **coarse) > 1.1 * (MARCH + 0.043)
+    assert judge.distance("shadow", "sun_march", "full", **coarse) > 1.1 * (MARCH + 0.046)
 
 
 def test_picture(judge: Judge) -> None:
