@@ -115,7 +115,8 @@ class Study:
                 ]
                 chosen += [c for c in exact if self._differs(Case(preset, sun, c, light_of(sun)))]
             lights = {c["light"] for c in chosen if "light" in c}
-            truths = {light: self._bake(Case(preset, sun, {"light": light}, light_of(sun)), "shadow") for light in lights}
+            lit = {light: Case(preset, sun, {"light": light}, light_of(sun)) for light in lights}
+            truths = {light: self._bake(case, "shadow") for light, case in lit.items()}
             for combination in sorted(chosen, key=lambda c: truths.get(c.get("light", ""), "")):
                 yield Case(preset, sun, combination, light_of(sun))
 
