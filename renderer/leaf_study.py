@@ -23,10 +23,11 @@ from renderer.forest.bakes import pattern_bake
 from renderer.forest.leaf_optics import LEAVES, fitted_lobes, fitted_species
 from renderer.forest.lobe_kernels import gather
 from renderer.forest.pattern_mips import LEVELS
+from renderer.forest.state import ForestState
 from renderer.session import Session
 from renderer.study.charts import COLOURS, MARKERS
 
-Floats = NDArray[np.floating]
+Floats = NDArray[Any]
 HELD_BACK = np.array(
     [(1, 1, 0), (1, -1, 0), (1, 0, 1), (1, 0, -1), (-1, 1, 0), (-1, 0, -1), (0, 1, -1), (0, -1, 1), (1, 2, 0)]
 )
@@ -153,7 +154,7 @@ def chart_of(rows: list[dict[str, Any]], folder: Path) -> None:
         axes.plot([row["level"] for row in rows], [row[name] for row in rows], marker=marker, color=colour, label=label)
     axes.set(xlabel="level (voxels twice as wide each)", ylabel="relative error of what a block sends", ylim=(0, None))
     axes.set_xticks([row["level"] for row in rows])
-    axes.legend()
+    figure.legend(loc="outside upper center", ncols=2)
     axes.grid(alpha=0.3)
     for end in ("svg", "png"):
         figure.savefig(folder / f"levels.{end}", dpi=150)
@@ -161,8 +162,8 @@ def chart_of(rows: list[dict[str, Any]], folder: Path) -> None:
 
 def run_levels(session: Session, folder: Path, tell: Callable[[float, str], None]) -> str:
     """Measure every level of the default forest; leaves `levels.json`, `levels.md` and the chart in a folder."""
-    state = session.state("forest")
-    pattern = session.compute(pattern_bake(state))
+
+    pattern = session.compute(pattern_bake(ForestState()))
     rows = level_errors(pattern, tell)
     species = json.loads(lobe.FITS.read_text())["species"]
     folder.mkdir(parents=True, exist_ok=True)

@@ -14,12 +14,13 @@ from __future__ import annotations
 import functools
 import json
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import OptimizeResult, dual_annealing, least_squares
 
-Floats = NDArray[np.float64]
+Floats = NDArray[Any]
 
 THESIS = (0.86, 0.77, 0.5, 0.0)
 """Cxy, Cz, p and a of Cohen 2004, section 6.3."""
