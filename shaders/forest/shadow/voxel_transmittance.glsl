@@ -4,6 +4,7 @@
 // Where the layer rises towards the sun, tau = tau(phi) cos phi / run: the horizontal way is the same, its length along the ray not.
 // Deviations: the functions are resolved for the sun before the frame; the layer's slope along the ray is one number.
 // The neighbours are the atlas' own, not the map's; a thinned stand and a glade's edge dim by the share of trees that stand.
+// Does not claim the shadow of a single tree on a glade: there the stand's edge casts it whole, as opaque as the land.
 
 #include "forest/land_shadow.glsl"
 
@@ -33,7 +34,7 @@ float shadow_visibility(vec3 position, float h, vec2 uv) {
     float here = cover_at(position.xy).x;
     float stand = 0.5 * (here + cover_at(halfway).x);
     float stretched = 1.0 / (run * sqrt(1.0 + climb * climb));
-    // A ray from a glade meets the trees around it as the land's shadow has them; one from a stand has met them already.
-    float land = over_land(position + step(0.25, here) * max(reach, 0.0) / run * sun_direction);
+    // A ray from a glade meets the trees around it as the land's shadow has them; one from a stand has met them on its way out.
+    float land = over_land(position + here * max(reach, 0.0) / run * sun_direction);
     return land * mix(1.0, pow(max(transmitted, 1e-4), stand * stretched), shadow_strength);
 }
