@@ -6,6 +6,13 @@
 
 const int FLAKES = 12;
 
+// Points of a golden spiral, spread evenly over the unit disk, and the hemisphere's height above each.
+const vec3 DISK[FLAKES] = vec3[FLAKES](
+    vec3(0.2041241, 0.0000000, 0.9789450), vec3(-0.2606993, 0.2388219, 0.9354143), vec3(0.0399042, -0.4546878, 0.8897565),
+    vec3(0.3285945, 0.4285934, 0.8416254), vec3(-0.6030114, -0.1066642, 0.7905694), vec3(0.5712250, -0.3633666, 0.7359801),
+    vec3(-0.1910636, 0.7107471, 0.6770032), vec3(-0.3643790, -0.7015896, 0.6123724), vec3(0.7905567, 0.2887100, 0.5400617),
+    vec3(-0.8224425, 0.3394923, 0.4564355), vec3(0.3964716, -0.8472368, 0.3535534), vec3(0.2929824, 0.9340742, 0.2041241));
+
 // Two unit vectors across v and each other. Duff et al. 2017.
 void across(vec3 v, out vec3 k, out vec3 j) {
     float side = v.z < 0.0 ? -1.0 : 1.0;
@@ -36,10 +43,8 @@ vec3 light_reflected(Matter matter, vec3 to_eye) {
     float front = 0.0;
     float behind = 0.0;
     for (int n = 0; n < FLAKES; n++) {
-        float square = (float(n) + 0.5) / float(FLAKES);
-        float turn = float(n) * 2.399963229728653;
-        vec2 place = sqrt(square) * vec2(cos(turn), sin(turn));
-        float lit = dot(normalize(place.x * along_u + place.y * along_v + sqrt(1.0 - square) * along_w), sun_direction);
+        vec3 place = DISK[n];
+        float lit = dot(normalize(place.x * along_u + place.y * along_v + place.z * along_w), sun_direction);
         front += max(lit, 0.0);
         behind += max(-lit, 0.0);
     }
