@@ -27,7 +27,7 @@ class SunMarch(ForestTechnique):
 
     kind: Literal["sun_march"] = "sun_march"
     step: float = param(
-        1.0, label="First step", help="Length of the first step, of the pattern's voxels.", unit="voxel", ge=0.25, le=8
+        1.5, label="First step", help="Length of the first step, of the pattern's voxels.", unit="voxel", ge=0.25, le=8
     )
     growth: float = param(
         0.4,
@@ -39,7 +39,7 @@ class SunMarch(ForestTechnique):
         source="Crassin et al. 2011, section 5 (cone aperture)",
     )
     bias: float = param(
-        -1.5,
+        -1.0,
         label="Level bias",
         help="Added to the mip level whose voxels are as long as the step; negative is sharper.",
         ge=-4,
