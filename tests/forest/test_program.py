@@ -24,7 +24,11 @@ ALL = [(slot, kind) for slot in SLOTS for kind in techniques("forest", slot)]
 
 SPARED: dict[str, Callable[[dict[str, str]], bool]] = {
     "sky_irradiance": lambda chosen: chosen["sky"] == "constant",
-    "sun_elevation": lambda chosen: chosen["shadow"] in ("none", "depth_shadow_map"),
+    "sun_elevation": lambda chosen: chosen["shadow"] == "none" or chosen["shadow"].endswith("shadow_map"),
+    # Trees are as tall everywhere, unless a canopy height model says otherwise.
+    "growth": lambda chosen: True,
+    "canopy_least": lambda chosen: chosen["geometry"] == "slices",
+    "canopy_grade": lambda chosen: chosen["geometry"] == "slices",
     "pixel_angle": lambda chosen: chosen["filter"] == "none",
     "pixel_width": lambda chosen: chosen["filter"] == "none",
 }
@@ -51,7 +55,12 @@ def test_what_is_declared_is_used(thread: GLThread, slot: str, kind: str) -> Non
 
 
 def test_an_idle_uniform_is_found(thread: GLThread) -> None:
-    assert thread.call(left_over, worlds.state(view={"background": "sky"}), "uniform float idle;") == ["idle"]
+    assert thread.call(left_over, worlds.state(view={"background": "sky"}), "uniform float idle;") == ["growth", "idle"]
+
+
+def test_local_heights_are_read(thread: GLThread) -> None:
+    state = worlds.state(view={"background": "sky"}, cover={"canopy_model": "asset:" + 64 * "0"})
+    assert thread.call(left_over, state) == []
 
 
 def test_every_part_declares_its_own(thread: GLThread) -> None:
