@@ -27,6 +27,9 @@ SIZES = ((512, 512), (1280, 720))
 STEP_DEGREES = 0.25
 """How far the sun or the camera turns from one timed frame to the next, where it moves."""
 
+COMBINATION = "combination"
+"""Stands for all slots in a case that names a combination of techniques."""
+
 MOVES = ("nothing", "sun", "camera")
 """What moves between two frames: what a frame keeps from the last one depends on it."""
 
@@ -64,13 +67,15 @@ class Stopwatch:
 
 def state_of(session: Session, scene: str, case: Case) -> SceneState:
     """The state that a case means: its preset with its techniques, under the sun and exposure that it sets."""
-    sets: dict[str, Any] = {f"{slot}.kind": kind for slot, kind in case.techniques.items()}
+    chosen = dict(case.techniques)
+    combination = chosen.pop(COMBINATION, None)
+    sets: dict[str, Any] = {f"{slot}.kind": kind for slot, kind in chosen.items()}
     # one sample a frame; a frame of the same state as the last one still draws a sample, and adds it
     sets["quality"] = {"kind": "samples", "n": 4096}
     for name, path in (("sun", "sun"), ("exposure", "view.exposure")):
         if name in case.parameters:
             sets[path] = case.parameters[name]
-    return session.state(scene, case.preset, sets)
+    return session.state(scene, case.preset, sets, combination=combination)
 
 
 def moved(state: SceneState, what: str, turn: int) -> SceneState:

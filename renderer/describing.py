@@ -10,13 +10,22 @@ from renderer.core.technique import Phenomenon, Technique
 
 
 def listed(found: Phenomenon) -> dict[str, Any]:
-    """Name, title, help and presets of a scene."""
+    """Name, title, help, presets and combinations of a scene."""
     presets = [{"name": name, "title": preset.title, "help": preset.help} for name, preset in found.presets.items()]
-    return {"name": found.name, "title": found.title, "help": found.help, "presets": presets}
+    combinations = [
+        {"name": name, "title": entry.title, "help": entry.help} for name, entry in found.combinations.items()
+    ]
+    return {
+        "name": found.name,
+        "title": found.title,
+        "help": found.help,
+        "presets": presets,
+        "combinations": combinations,
+    }
 
 
 def described(found: Phenomenon, documents: Mapping[str, dict[str, Any]], version: tuple[int, int]) -> dict[str, Any]:
-    """Schema, defaults, presets and slots of a scene.
+    """Schema, defaults, presets, combinations and slots of a scene.
 
     Args:
         found: the phenomenon.
@@ -34,6 +43,10 @@ def described(found: Phenomenon, documents: Mapping[str, dict[str, Any]], versio
         "schema": found.state.model_json_schema(),
         "defaults": found.state().model_dump(mode="json"),
         "presets": presets,
+        "combinations": {
+            name: {"title": entry.title, "help": entry.help, "patch": entry.patch}
+            for name, entry in found.combinations.items()
+        },
         "slots": slots_of(found, version),
     }
 

@@ -82,8 +82,9 @@ class Session:
         preset: str | None = None,
         sets: Mapping[str, Any] | None = None,
         document: dict[str, Any] | None = None,
+        combination: str | None = None,
     ) -> SceneState:
-        """A checked state: the scene's defaults, then a preset, a document and single values over them.
+        """A checked state: the scene's defaults, then a preset, a document, a combination and single values over them.
 
         Raises:
             InputError, InvalidDocument: naming the field.
@@ -96,6 +97,10 @@ class Session:
             made = merge(made, found.presets[preset].patch)
         if document is not None:
             made = merge(made, migrate(document))
+        if combination is not None:
+            if combination not in found.combinations:
+                raise InputError("combination", f"{scene} has no such one", ", ".join(found.combinations) or "none")
+            made = merge(made, found.combinations[combination].patch)
         for path, value in (sets or {}).items():
             made = set_path(made, path, value)
         return validate(found.state, made)  # type: ignore[return-value]
@@ -106,8 +111,7 @@ class Session:
         Raises:
             InputError, InvalidDocument: naming the field.
         """
-        current = migrate(document)
-        scene = current.get("scene")
+        scene = (current := migrate(document)).get("scene")
         if not isinstance(scene, str):
             raise InputError("scene", "a state names its scene", ", ".join(phenomena()))
         return validate(phenomenon(scene).state, current)  # type: ignore[return-value]
@@ -201,8 +205,7 @@ class Session:
 
         Args:
             period: a document of `renderer.world.sun_course.SunlightPeriod`: days, place, receiver.
-            state: the land that it draws, with its trees;
-            files: without one, an elevation model, `terrain`, and heights of the canopy over it, `canopy`.
+            state: the land that it draws; without one, `files`: `terrain`, and heights of the `canopy` over it.
             on_progress: told how far the work is; may raise `Cancelled`.
 
         Raises:
@@ -225,13 +228,11 @@ class Session:
         return self.admit(self.assets, path, filename, reading)
 
     @staticmethod
-    def admit(
-        assets: AssetStore, path: Path, filename: str, reading: Mapping[str, Any] | None = None
-    ) -> dict[str, Any]:
+    def admit(assets: AssetStore, path: Path, name: str, reading: Mapping[str, Any] | None = None) -> dict[str, Any]:
         """As `add_asset`, into any store; needs no GL."""
         from renderer.world.upload import admit
 
-        return admit(assets, path, filename, reading)
+        return admit(assets, path, name, reading)
 
     @staticmethod
     def quantities() -> list[dict[str, Any]]:

@@ -10,80 +10,25 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import renderer
-from renderer.benching import Stopwatch, state_of
+from renderer.benching import COMBINATION, MOVES, Stopwatch, state_of
 from renderer.comparing import PASSES, converged, reference, truth
 from renderer.core.baking import bake_key
 from renderer.core.cache import key_of
 from renderer.core.channel import Progress
-from renderer.core.errors import InputError
 from renderer.core.registry import SHADERS, phenomenon, techniques
 from renderer.study.charts import write
 from renderer.study.sweep import FRAMES, Case, Drawn, append, clock, provenance, sweep
 from renderer.study.yardstick import Yardstick
+from renderer.study_plan import EXACT, Plan, kinds_of, light_of
 from renderer.truth import Judge, code_of, truth_bake
-from renderer.world.state import SceneState, View
+from renderer.world.state import SceneState
 
 if TYPE_CHECKING:
     from renderer.session import Session
 
 Tell = Callable[[float, str], None]
 
-SUNS: Mapping[str, tuple[float, float]] = {
-    "az180_el62": (180.0, 62.0),
-    "az120_el20": (120.0, 20.0),
-    "az090_el08": (90.0, 8.0),
-    "az150_el40": (150.0, 40.0),
-    "az210_el50": (210.0, 50.0),
-    "az240_el30": (240.0, 30.0),
-    "az270_el15": (270.0, 15.0),
-    "az300_el05": (300.0, 5.0),
-}
-"""Azimuth and elevation of the study's suns, degrees: from all sides, from near the horizon to summer noon. The first
-few alone already differ as much as they can."""
-
-SLOTS = ("shadow", "light", "geometry")
-"""Slots whose techniques are combined, where none are named; the others keep their defaults."""
-
-EXACT = "exact"
-"""Stands for a slot's technique in a picture that the reference drew."""
-
 TIMED_SIZE = (512, 512)
-
-
-@dataclass(frozen=True)
-class Plan:
-    """What a study covers.
-
-    Attributes:
-        scene: its name.
-        presets, suns, slots: by name.
-        size: side of the pictures, pixels.
-        judge: what the pictures are judged for.
-    """
-
-    scene: str
-    presets: tuple[str, ...] = ()
-    suns: tuple[str, ...] = tuple(SUNS)
-    slots: tuple[str, ...] = SLOTS
-    size: int = 128
-    judge: Judge = "combination"
-
-    def checked(self) -> Plan:
-        """The plan with its presets named.
-
-        Raises:
-            InputError: naming the option.
-        """
-        found = phenomenon(self.scene)
-        presets = self.presets or tuple(found.presets)[:1]
-        known = {"presets": tuple(found.presets), "suns": tuple(SUNS), "slots": tuple(s.name for s in found.slots)}
-        for option, given in (("presets", presets), ("suns", self.suns), ("slots", self.slots)):
-            for name in given:
-                if name not in known[option]:
-                    raise InputError(option, f"there is no {name} in {self.scene}", ", ".join(known[option]))
-        if not 16 <= self.size <= 256:
-            raise InputError("size", f"{self.size} px are not studied", "16 to 256: the reference runs on the CPU")
-        return replace(self, presets=presets)
 
 
 @dataclass
@@ -104,7 +49,7 @@ class Study:
 
     def cases(self) -> Iterator[Case]:
         """Every case; those that share a reference are neighbours."""
-        kinds = [tuple(techniques(self.plan.scene, slot)) for slot in self.plan.slots]
+        kinds = [tuple(kinds_of(self.plan.scene, slot)) for slot in self.plan.slots]
         for preset, sun in itertools.product(self.plan.presets, self.plan.suns):
             chosen = [dict(zip(self.plan.slots, combination, strict=True)) for combination in itertools.product(*kinds)]
             if self.plan.judge == "combination" and "light" in self.plan.slots:
@@ -166,12 +111,6 @@ class Study:
             self.tell(progress.fraction, progress.words)
 
 
-def light_of(name: str) -> dict[str, Any]:
-    """What a sun of the study sets: the sun as a document, and the exposure, of which a preset may have its own."""
-    azimuth, elevation = SUNS[name]
-    return {"sun": {"kind": "direction", "azimuth": azimuth, "elevation": elevation}, "exposure": View().exposure}
-
-
 def measure_errors(
     study: Study, results: Path, machine: Mapping[str, Any], progress: Tell | None = None
 ) -> list[dict[str, Any]]:
@@ -187,7 +126,9 @@ def measure_times(
     frames: int = FRAMES,
     progress: Tell | None = None,
 ) -> list[dict[str, Any]]:
-    """One interactive frame of every combination at the first preset and sun, 512 x 512, timed in turns in one run.
+    """One interactive frame of every case at the first preset and sun, 512 x 512, timed in turns in one run.
+
+    Named combinations are timed at every preset, with the sun moving and with the camera moving.
 
     Args:
         session, plan: as of the errors.
@@ -196,8 +137,14 @@ def measure_times(
         frames: timed frames of each.
         progress: told the share done.
     """
-    first = replace(plan, presets=plan.presets[:1], suns=plan.suns[:1], judge="shadow")
-    cases = list(Study(session, first).cases())
+    named = plan.slots == (COMBINATION,)
+    first = replace(plan, presets=plan.presets if named else plan.presets[:1], suns=plan.suns[:1], judge="shadow")
+    moves = MOVES[1:] if named else MOVES[:1]
+    cases = [
+        replace(case, parameters={**case.parameters, "moves": what})
+        for case in Study(session, first).cases()
+        for what in moves
+    ]
     stick = session.gl.call(Yardstick)
     watch = Stopwatch(session, plan.scene, TIMED_SIZE)
     yardstick = functools.partial(session.gl.call, stick.draw_ms)
@@ -230,7 +177,7 @@ def run(
     machine = provenance(session.gl.info.renderer)
     study = Study(session, plan, inner)
     times: list[dict[str, Any]] = []
-    for judge, home in JUDGED.items():
+    for judge, home in plan.judged.items():
         study.plan = replace(plan, judge=judge)
         results = folder / home / "results.jsonl"
         lines = measure_errors(study, results, machine, tell)
@@ -240,10 +187,6 @@ def run(
             for line in times:
                 append(results, line)
         _draw(folder / home, study.plan, machine, lines)
-
-
-JUDGED: dict[Judge, str] = {"combination": "", "shadow": "shadow"}
-"""Folder of each judgement's results inside a study's."""
 
 
 def _draw(home: Path, plan: Plan, machine: Mapping[str, Any], lines: list[dict[str, Any]]) -> None:

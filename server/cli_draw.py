@@ -51,6 +51,7 @@ def state_options(command: argparse.ArgumentParser, required: bool = True) -> No
     """Declare what names a state; `required` where the command does nothing without one."""
     command.add_argument("scene", metavar="SCENE", nargs=None if required else "?")
     command.add_argument("--preset", metavar="NAME")
+    command.add_argument("--combination", metavar="NAME", help="techniques of every slot by one name")
     command.add_argument("--state", metavar="FILE", help="a state document (JSON); - for standard input")
     command.add_argument(
         "--set",
@@ -69,6 +70,8 @@ def scenes(given: argparse.Namespace) -> int:
             print(f"{scene['name']:14} {scene['title']}: {scene['help']}")
             for preset in scene["presets"]:
                 print(f"  --preset {preset['name']:20} {preset['title']}: {preset['help']}")
+            for entry in scene["combinations"]:
+                print(f"  --combination {entry['name']:15} {entry['title']}: {entry['help']}")
     return 0
 
 
@@ -143,7 +146,8 @@ def state_of(session: Session, given: argparse.Namespace) -> Any:
         sets[path] = value_of(text)
     if sets:
         sets = kept_files(sets, session.describe(given.scene)["schema"], session.assets)
-    return session.state(given.scene, given.preset, sets, document_of(given.state) if given.state else None)
+    document = document_of(given.state) if given.state else None
+    return session.state(given.scene, given.preset, sets, document, given.combination)
 
 
 def value_of(text: str) -> Any:

@@ -8,6 +8,7 @@ import time
 from pathlib import Path
 from typing import Any
 
+from renderer.benching import COMBINATION
 from renderer.core.channel import Progress
 from renderer.core.errors import InputError
 from renderer.session import Session
@@ -35,8 +36,9 @@ def add(commands: Any) -> None:
     command = commands.add_parser("study", help="error of every combination of techniques against the reference")
     command.add_argument("scene", metavar="SCENE")
     command.add_argument("--presets", metavar="NAME,..", default="", help="all, or names (default: the scene's first)")
-    command.add_argument("--suns", metavar="NAME,..", default="all", help="names, or how many (default: %(default)s)")
+    command.add_argument("--suns", metavar="NAME,..", default="", help="all, names, or how many (default: 8 or all)")
     command.add_argument("--slots", metavar="NAME,..", default="", help="(default: shadow, light and geometry)")
+    command.add_argument("--combinations", action="store_true", help="of the named combinations of techniques instead")
     command.add_argument("--size", type=int, default=128, help="side of the pictures, px (default %(default)s)")
     command.add_argument("--frames", type=int, default=FRAMES, help="timed frames of each; 0 for no times")
     command.add_argument("--docs", action="store_true", help="copy tables and charts into docs/study")
@@ -93,17 +95,19 @@ def names_of(option: str, text: str, every: tuple[str, ...]) -> tuple[str, ...]:
 
 def study(given: argparse.Namespace) -> int:
     """Run a study and write its raw results, tables and charts."""
-    from renderer import studying  # charts take a second to import, which no other command should pay
+    from renderer import study_plan, studying  # charts take a second to import, which no other command should pay
 
     if given.frames < 0:
         raise InputError("--frames", "cannot be negative", f"0 for no times, {FRAMES} for stated ones")
     with Session() as session:
         scene = session.describe(given.scene)
-        plan = studying.Plan(
+        slots = COMBINATION if given.combinations else given.slots
+        suns = "all" if given.combinations else str(study_plan.SOME_SUNS)
+        plan = study_plan.Plan(
             given.scene,
             names_of("--presets", given.presets, tuple(scene["presets"])),
-            names_of("--suns", given.suns, tuple(studying.SUNS)),
-            names_of("--slots", given.slots, tuple(slot["name"] for slot in scene["slots"])) or studying.SLOTS,
+            names_of("--suns", given.suns or suns, tuple(study_plan.SUNS)),
+            names_of("--slots", slots, study_plan.Plan.slots_of(given.scene)) or study_plan.SLOTS,
             given.size,
         ).checked()
         folder = Path(load().study) / given.scene
@@ -113,9 +117,10 @@ def study(given: argparse.Namespace) -> int:
         finally:
             tell.bar.close()
     if given.docs:
-        for part in ("", "shadow"):
+        for part in plan.judged.values():
             keep(folder / part, DOCS / "study" / given.scene / part, KEPT)
-    print(f"{folder}: results.jsonl, table.md, speed_accuracy.svg .png .csv; in shadow/ those of the shadows alone")
+    homes = ", ".join(str(folder / part) for part in plan.judged.values())
+    print(f"{homes}: results.jsonl, table.md, speed_accuracy.svg .png .csv")
     return 0
 
 

@@ -16,9 +16,10 @@ from renderer.core.errors import InputError
 from renderer.core.registry import techniques
 from renderer.session import Session
 from renderer.study.sweep import Case, Drawn, read
-from renderer.studying import EXACT, Plan, Study
+from renderer.study_plan import EXACT, SLOTS, SUNS, Plan, light_of
+from renderer.studying import Study
 
-KINDS = {slot: tuple(techniques("forest", slot)) for slot in studying.SLOTS}
+KINDS = {slot: tuple(techniques("forest", slot)) for slot in SLOTS}
 COMBINATIONS = math.prod(len(kinds) for kinds in KINDS.values())
 OWN_LIGHT = ("gouraud", "lambert")
 """Lights that the reference has beside its own."""
@@ -32,8 +33,8 @@ class Pretended:
         self.gl = SimpleNamespace(info=SimpleNamespace(renderer="pretended"))
         self.shown: list[Any] = []
 
-    def state(self, *arguments: Any) -> Any:
-        return Session.state(self, *arguments)  # type: ignore[arg-type]
+    def state(self, *arguments: Any, **named: Any) -> Any:
+        return Session.state(self, *arguments, **named)  # type: ignore[arg-type]
 
     def prepared(self, state: Any) -> bool:
         return True
@@ -75,29 +76,29 @@ def test_a_wrong_plan_names_its_option(changes: dict[str, Any], field: str) -> N
 
 
 def test_every_combination_is_there_once_and_neighbours_share_a_reference(session: Any) -> None:
-    study = Study(session, Plan("forest", ("noon",), tuple(studying.SUNS)[:2]).checked())
+    study = Study(session, Plan("forest", ("noon",), tuple(SUNS)[:2]).checked())
     cases = list(study.cases())
     combined = [case for case in cases if EXACT not in case.techniques.values()]
     assert len(combined) == len({repr(case) for case in combined}) == 2 * COMBINATIONS
     exact = [case.techniques for case in cases if case not in combined]
     assert sorted(case["light"] for case in exact) == sorted(2 * OWN_LIGHT)
     assert all(case["shadow"] == case["geometry"] == EXACT for case in exact)
-    study.plan = Plan("forest", ("noon",), tuple(studying.SUNS)[:2], judge="shadow").checked()
+    study.plan = Plan("forest", ("noon",), tuple(SUNS)[:2], judge="shadow").checked()
     keys = [study._bake(case, "shadow") for case in study.cases()]
     changes = sum(a != b for a, b in itertools.pairwise(keys))
     assert changes == len(set(keys)) - 1 == 2 * (len(OWN_LIGHT) + 1) - 1
 
 
-def test_eight_suns_differ(session: Any) -> None:
-    cases = [Case("noon", sun, {}, studying.light_of(sun)) for sun in studying.SUNS]
+def test_two_dozen_suns_differ(session: Any) -> None:
+    cases = [Case("noon", sun, {}, light_of(sun)) for sun in SUNS]
     states = [benching.state_of(session, "forest", case) for case in cases]
-    assert len({state.sun.model_dump_json() for state in states}) == 8
-    assert {state.sun.elevation for state in states} == {elevation for _, elevation in studying.SUNS.values()}
+    assert len({state.sun.model_dump_json() for state in states}) == 24
+    assert {state.sun.elevation for state in states} == {elevation for _, elevation in SUNS.values()}
 
 
 def test_a_fingerprint_follows_what_is_drawn(session: Any) -> None:
     study = Study(session, Plan("forest", ("noon",)).checked())
-    light = studying.light_of(next(iter(studying.SUNS)))
+    light = light_of(next(iter(SUNS)))
     prints = [study.fingerprint(Case("noon", "a", {"shadow": kind}, light)) for kind in ("none", "horizon_map")]
     assert prints[0] != prints[1]
     assert prints[0] == study.fingerprint(Case("noon", "renamed", {"shadow": "none"}, light))
@@ -121,7 +122,7 @@ def test_a_study_leaves_results_tables_and_charts(
             1.01 if found[1] == "shadow" and found[0].light.kind == "gouraud" else 1.0
         ),
     )
-    plan = Plan("forest", ("noon",), tuple(studying.SUNS)[:2], size=16).checked()
+    plan = Plan("forest", ("noon",), tuple(SUNS)[:2], size=16).checked()
     told: list[float] = []
     studying.run(session, plan, tmp_path, 0, lambda share, words: told.append(share))
     assert len(drawn) == 2 * COMBINATIONS, "each picture is drawn once for both judgements"

@@ -117,6 +117,7 @@ class Phenomenon:
         name: as in the document's `scene`.
         state: the pydantic model of its whole state document.
         presets: named patches of the default document, with a title each.
+        combinations: named patches of the slots alone, which leave view and world as they are.
         bakes: what a state needs precomputed, inputs first.
         open: makes its renderer on the GL thread.
         world: `(state, arrays of the bakes by name) -> plain arrays and numbers`: what is drawn, whatever the
@@ -139,6 +140,7 @@ class Phenomenon:
     world_needs: tuple[str, ...]
     metered_light: Callable[[Any, Mapping[str, Arrays]], float]
     probe: Callable[[Any, Mapping[str, Arrays], float, float, tuple[int, int]], dict[str, Any]]
+    combinations: Mapping[str, Preset] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)

@@ -7,6 +7,7 @@ from typing import Any
 
 from renderer.core.technique import Arrays, Phenomenon, Preset, Slot
 from renderer.forest.bakes import bakes
+from renderer.forest.combinations import COMBINATIONS
 from renderer.forest.probe import probe
 from renderer.forest.renderer import ForestRenderer
 from renderer.forest.state import DEFAULTS, ForestState
@@ -118,4 +119,5 @@ PHENOMENON = Phenomenon(
     world_needs=NEEDS,
     metered_light=_metered_light,
     probe=probe,
+    combinations=COMBINATIONS,
 )

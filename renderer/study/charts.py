@@ -32,7 +32,9 @@ class Point:
         error, worst: median and worst relative RMSE.
         flip: median of FLIP's mean.
         gained: median relative RMSE after one gain a picture.
-        frame_ms, yardsticks: median interactive frame; NaN where it was not timed.
+        frame_ms, yardsticks: median interactive frame, the camera at rest; NaN where it was not timed.
+        slowest: the same at the preset where it takes most, yardsticks.
+        moved: median frame while the camera moves, yardsticks; NaN where it was not timed.
         pairing: worst ratio of one frame's noise to the reference's; NaN where unknown.
         cases: number of results behind the errors.
         on_front: no other combination is both faster and more right.
@@ -45,6 +47,8 @@ class Point:
     gained: float
     frame_ms: float
     yardsticks: float
+    slowest: float
+    moved: float
     pairing: float
     cases: int
     on_front: bool
@@ -109,14 +113,19 @@ def _point(
         return float(np.median(values)) if values else float("nan")
 
     pairing = [line["pairing"] for line in errors if line.get("pairing") is not None]
+    turned = [line for line in times if line["parameters"].get("moves") == "camera"]
+    rested = [line for line in times if line not in turned]
+    slowest = max((line["yardsticks"] for line in rested if line.get("yardsticks")), default=float("nan"))
     return Point(dict(techniques), middle(errors, "relative_rmse"), max(line["relative_rmse"] for line in errors),
-                 middle(errors, "flip_mean"), middle(errors, "relative_rmse_after_gain"), middle(times, "frame_ms"),
-                 middle(times, "yardsticks"), max(pairing, default=float("nan")), len(errors), False)
+                 middle(errors, "flip_mean"), middle(errors, "relative_rmse_after_gain"), middle(rested, "frame_ms"),
+                 middle(rested, "yardsticks"), slowest, middle(turned, "yardsticks"),
+                 max(pairing, default=float("nan")), len(errors), False)
 
 
 COLUMNS: tuple[tuple[str, str], ...] = (
     ("median relative RMSE", "error"), ("worst", "worst"), ("median after one gain", "gained"), ("median FLIP", "flip"),
-    ("frame, ms", "frame_ms"), ("yardsticks", "yardsticks"), ("noise against the reference's", "pairing"),
+    ("frame, ms", "frame_ms"), ("yardsticks", "yardsticks"), ("slowest preset", "slowest"),
+    ("camera moving", "moved"), ("noise against the reference's", "pairing"),
     ("cases", "cases"))
 
 

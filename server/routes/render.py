@@ -26,6 +26,7 @@ class StateRequest(Model):
     state: dict[str, Any] | None = Field(None, description="A whole state document, as the page shares it.")
     scene: Name | None = Field(None, description="A scene's name, where no state is given.")
     preset: Name | None = Field(None, description="One of the scene's presets.")
+    combination: Name | None = Field(None, description="One of the scene's combinations of techniques.")
     sets: dict[str, Any] | None = Field(None, description="Values by dotted path, as `sun.elevation`.", max_length=1000)
     quality: dict[str, Any] | None = Field(None, description="Replaces the quality of the state.")
 
@@ -46,7 +47,7 @@ async def state_of(hub: Hub, asked: StateRequest) -> Any:
     scene = asked.scene if asked.scene is not None else (asked.state or {}).get("scene")
     if not isinstance(scene, str):
         raise InputError("scene", "is missing", "a scene's name, here or in the state")
-    state = await hub.call(hub.session.state, scene, asked.preset, asked.sets, asked.state)
+    state = await hub.call(hub.session.state, scene, asked.preset, asked.sets, asked.state, asked.combination)
     if asked.quality is None:
         return state
     return await hub.call(hub.session.validate, merge(state.model_dump(mode="json"), {"quality": asked.quality}))

@@ -151,7 +151,7 @@ class FakeSession:
 
     def scenes(self) -> list[dict[str, Any]]:
         presets = [{"name": "noon", "title": "Noon", "help": "High sun"}]
-        return [{"name": "fake", "title": "Fake", "help": "A gradient", "presets": presets}]
+        return [{"name": "fake", "title": "Fake", "help": "A gradient", "presets": presets, "combinations": []}]
 
     def describe(self, scene: str) -> dict[str, Any]:
         self._known(scene)
@@ -177,8 +177,11 @@ class FakeSession:
         preset: str | None = None,
         sets: Mapping[str, Any] | None = None,
         document: dict[str, Any] | None = None,
+        combination: str | None = None,
     ) -> FakeState:
         self._known(scene)
+        if combination is not None:
+            raise InputError("combination", f"{scene} has no such one", "none")
         found = dict(document) if document is not None else FakeState().model_dump(mode="json")
         if preset is not None:
             if preset != "noon":
