@@ -19,7 +19,7 @@ def test_names_are_listed_counted_or_all(text: str, names: tuple[str, ...]) -> N
     ("command", "words"),
     [
         ("study forest --presets dawn", "--presets: dawn is not known"),
-        ("study forest --suns 9", "--suns: 9 is not known"),
+        ("study forest --suns 99", "--suns: 99 is not known"),
         ("study forest --slots shadow,hat", "--slots: hat is not known"),
         ("study forest --size 4000", "size: 4000 px are not studied"),
         ("study forest --frames -1", "--frames: cannot be negative"),
