@@ -11,23 +11,19 @@ export function parse(buffer) {
   return { header: JSON.parse(text), image: new Uint8Array(buffer, HEADER_BYTES + length) };
 }
 
-/** An image of a movement is decoded where it lies, if the browser can; a blob would first be handed to another process. */
-async function decoded(image, codec) {
+/** A moving picture is decoded where it lies: a blob goes to another process first. */
+async function decoded(data, codec) {
   const type = MIME[codec];
-  if (codec !== "jpeg" || !("ImageDecoder" in window)) return createImageBitmap(new Blob([image], { type }));
-  const decoder = new ImageDecoder({ data: image, type });
-  try {
-    return (await decoder.decode()).image;
-  } finally {
-    decoder.close();
-  }
+  if (codec !== "jpeg" || !("ImageDecoder" in window)) return createImageBitmap(new Blob([data], { type }));
+  const decoder = new ImageDecoder({ data, type });
+  return decoder.decode().then(({ image }) => image).finally(() => decoder.close());
 }
 
 /**
- * Decodes and draws frames, oldest dropped when a newer one of the same stream was drawn already.
+ * Decodes and draws frames, dropping what is older than the one drawn.
  *
- * A frame is acknowledged when it arrives, so that the server renders the next one while this one is decoded; where
- * decoding falls behind, only once it is decoded, so that no queue grows here.
+ * A frame is acknowledged when it arrives, so that the next one is rendered meanwhile; where decoding falls behind,
+ * once it is decoded.
  */
 export class Frames {
   constructor(link, screen, stats) {

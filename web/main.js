@@ -142,11 +142,8 @@ async function pasted() {
 }
 
 let stale = false;
-let refreshed = 0;
-let waitingToRefresh = null;
-const refreshNow = perFrame(() => {
+const refresh = perFrame(() => {
   if (!store.document || !store.scene) return;
-  refreshed = performance.now();
   panels.refresh(stale);
   sunBar.refresh(stale);
   stale = false;
@@ -154,15 +151,11 @@ const refreshNow = perFrame(() => {
   tools.redo.disabled = !store.future.length;
 });
 
-/** Controls follow the document; a few times a second while the picture is dragged, because the picture comes first. */
-function refresh() {
-  if (waitingToRefresh) return;
-  const wait = pointer.pointers.size ? refreshed + DRAGGED_MS - performance.now() : 0;
-  if (wait <= 0) refreshNow();
-  else waitingToRefresh = setTimeout(() => {
-    waitingToRefresh = null;
-    refreshNow();
-  }, wait);
+/** Controls follow the document; seldom during a drag. */
+let later = null;
+function follow() {
+  if (!pointer.pointers.size) refresh();
+  else later ??= setTimeout(() => { later = null; refresh(); }, DRAGGED_MS);
 }
 
 const KEYS = { KeyH: () => document.body.classList.toggle("bare"), Slash: () => tools.help.click() };
@@ -195,7 +188,7 @@ async function start() {
   assemble();
   store.addEventListener("change", ({ detail }) => {
     stale ||= detail.source === "server" || detail.source === "scene";
-    refresh();
+    follow();
   });
   stats.addEventListener("frame", waiting, { once: true });
   screen.addEventListener("size", () => link.send({ type: "resize", width: screen.width, height: screen.height }));

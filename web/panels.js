@@ -66,10 +66,17 @@ export class Panels {
       else sections.push(this.section(context, name, node, sort));
     }
     this.root.replaceChildren(
-      this.fold("Techniques", true, ...slots.map((slot) => slot.root)),
+      this.fold("Techniques", true, this.combined(scene), ...slots.map((slot) => slot.root)),
       ...(loose.parts.length ? [this.fold("Scene", true, loose.root)] : []),
       ...sections);
     this.refresh();
+  }
+
+  /** All slots at once. */
+  combined({ combinations }) {
+    const choices = Object.entries(combinations).map(([value, { title }]) => el("option", { value, text: title }));
+    return el("select", { "aria-label": "Combination", hidden: !choices.length,
+      on: { change: ({ target }) => this.store.change(combinations[target.value].patch) } }, el("option", { text: "Combinations …", hidden: true }), choices);
   }
 
   section(context, name, node, sort) {

@@ -38,7 +38,7 @@ export class Screen extends EventTarget {
   /** Copy a picture into its canvas, which takes the picture's size: the compositor stretches it at no cost of ours. */
   draw(stream, bitmap) {
     const canvas = this.canvases[stream];
-    const [width, height] = [bitmap.displayWidth ?? bitmap.width, bitmap.displayHeight ?? bitmap.height];
+    const { displayWidth: width = bitmap.width, displayHeight: height = bitmap.height } = bitmap;
     if (canvas.width !== width || canvas.height !== height) {
       canvas.width = width;
       canvas.height = height;

@@ -93,7 +93,7 @@ PRESETS = {
     "valley_sunset": Preset(
         "Valley at sunset",
         "The ridge has taken the sun from the valley floor.",
-        {"camera": _orbit((1600, -900, 400), 1500, 268, 5), "sun": _sun(292, 9), "view": {"exposure": 0.62}},
+        {"camera": _orbit((1600, -900, 400), 1500, 268, 5), "sun": _sun(292, 9), "view": {"exposure": -0.4}},
     ),
     "forest_edge": Preset(
         "Forest edge",
