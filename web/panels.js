@@ -75,7 +75,7 @@ export class Panels {
   /** All slots at once. */
   combined({ combinations }) {
     const choices = Object.entries(combinations).map(([value, { title }]) => el("option", { value, text: title }));
-    return el("select", { "aria-label": "Combination", hidden: !choices.length,
+    return el("select", { class: "select", "aria-label": "Combination", hidden: !choices.length,
       on: { change: ({ target }) => this.store.change(combinations[target.value].patch) } }, el("option", { text: "Combinations …", hidden: true }), choices);
   }
 
