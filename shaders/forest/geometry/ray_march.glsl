@@ -1,20 +1,25 @@
 // Ray marching of the canopy layer, front to back, with early stop and empty-space skipping.
 // Levoy 1990 (early stop, empty space); formulas (g). Today's way beside the thesis' slices.
 // Symbols: alpha opacity for one voxel of the level; ds step [m]; T transmittance.
-// Deviations: the step grows with the mip level; light is evaluated at one random level of opacity (events.glsl), not at every step;
+// Deviations: the step grows with the mip level, to half of the canopy at most: longer ones look at the light too deep in it; light is evaluated at one random level of opacity (events.glsl), not at every step;
 // each ray reads nearest voxels at its own offset, whose mean over rays is trilinear interpolation.
 
-// Formulas g: front to back, T *= 1 - alpha'; alpha' = 1 - (1 - alpha)^step, a step being that share of a voxel.
+// Length of a step at a level [m].
+float step_at(float scale) {
+    return min(geometry_step * voxel_size * scale, 0.5 * canopy_height);
+}
+
+// Formulas g: front to back, T *= 1 - alpha'; alpha' = 1 - (1 - alpha)^(ds / voxel).
 void geometry_trace(vec3 origin, vec3 direction, float t, vec4 jitter, inout Event event) {
     float rate = voxel_rate(direction);
     vec3 offset = voxel_offset(jitter);
     float previous = t;
-    t += geometry_step * voxel_size * exp2(level_at(t, jitter.z)) * jitter.x;
+    t += step_at(exp2(level_at(t, jitter.z))) * jitter.x;
     int found = 1;
     for (int i = 0; i < MARCH_STEPS && found == 1; i++) {
         float level = level_at(t, jitter.z);
         float scale = exp2(level);
-        float ds = geometry_step * voxel_size * scale;
+        float ds = step_at(scale);
         vec3 p = origin + t * direction;
         vec3 ground = ground_at(p.xy);
         float above = p.z - ground.x;
@@ -26,7 +31,8 @@ void geometry_trace(vec3 origin, vec3 direction, float t, vec4 jitter, inout Eve
         bool gone = t > scene_reach || (over && direction.z >= 0.0 && p.z > scene_top);
         found = above <= 0.0 ? 2 : gone ? 0 : 1;
         vec2 stand = stand_of(p.xy, voxel);
-        float alpha = found == 1 && !over && above <= layer ? (1.0 - pow(1.0 - opacity_of(voxel), geometry_step)) * stand.x : 0.0;
+        float within = 1.0 - pow(1.0 - opacity_of(voxel), ds / (voxel_size * scale));
+        float alpha = found == 1 && !over && above <= layer ? within * stand.x : 0.0;
         float opacity = 1.0 - (1.0 - event.opacity) * (1.0 - alpha);
         if (opacity > 1.0 - geometry_stop) {
             opacity = 1.0;
