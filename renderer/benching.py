@@ -11,6 +11,7 @@ from renderer.core.registry import phenomenon, techniques
 from renderer.study.horizon_bench import time_horizons
 from renderer.study.sweep import FRAMES, Case, clock, provenance
 from renderer.study.yardstick import Yardstick
+from renderer.world.camera import Look
 from renderer.world.state import SceneState, View
 from renderer.world.sun import SunDirection, angles
 
@@ -83,11 +84,22 @@ def moved(state: SceneState, what: str, turn: int) -> SceneState:
     if what == "nothing":
         return state
     part: Any = state.camera
+    if what == "camera" and isinstance(part, Look):
+        return state.model_copy(update={what: _looking_aside(part, turn)})
     if what == "sun":
         azimuth, elevation = angles(state.sun)
         part = SunDirection(azimuth=math.degrees(azimuth), elevation=math.degrees(elevation))
     turned = part.model_copy(update={"azimuth": (part.azimuth + turn * STEP_DEGREES) % 360.0})
     return state.model_copy(update={what: turned})
+
+
+def _looking_aside(camera: Look, turn: int) -> Look:
+    """The camera turned on the spot."""
+    angle = math.radians(turn * STEP_DEGREES)
+    x, y, z = (end - start for start, end in zip(camera.eye, camera.target, strict=True))
+    turned = (x * math.cos(angle) + y * math.sin(angle), y * math.cos(angle) - x * math.sin(angle), z)
+    target = tuple(start + way for start, way in zip(camera.eye, turned, strict=True))
+    return camera.model_copy(update={"target": target})
 
 
 def variants(scene: str) -> list[dict[str, str]]:
