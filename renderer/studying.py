@@ -128,7 +128,7 @@ def measure_times(
 ) -> list[dict[str, Any]]:
     """One interactive frame of every case at the first preset and sun, 512 x 512, timed in turns in one run.
 
-    Named combinations are timed at every preset, with the sun moving and with the camera moving.
+    Named combinations are timed at every preset, first with the sun moving, then with the camera moving.
 
     Args:
         session, plan: as of the errors.
@@ -137,21 +137,26 @@ def measure_times(
         frames: timed frames of each.
         progress: told the share done.
     """
-    named = plan.slots == (COMBINATION,)
-    first = replace(plan, presets=plan.presets if named else plan.presets[:1], suns=plan.suns[:1], judge="shadow")
-    moves = MOVES[1:] if named else MOVES[:1]
-    cases = [
-        replace(case, parameters={**case.parameters, "moves": what})
-        for case in Study(session, first).cases()
-        for what in moves
-    ]
     stick = session.gl.call(Yardstick)
     watch = Stopwatch(session, plan.scene, TIMED_SIZE)
     yardstick = functools.partial(session.gl.call, stick.draw_ms)
+    found = []
     try:
-        return clock(results, cases, watch.frame_ms, TIMED_SIZE, machine, yardstick, frames, progress)
+        for cases in _timed(session, plan):
+            found += clock(results, cases, watch.frame_ms, TIMED_SIZE, machine, yardstick, frames, progress)
     finally:
         watch.close()
+    return found
+
+
+def _timed(session: Session, plan: Plan) -> Iterator[list[Case]]:
+    """Cases that are timed in turns: frames of a moving camera among them would push out what a moving sun leaves."""
+    named = plan.slots == (COMBINATION,)
+    for what in MOVES[1:] if named else MOVES[:1]:
+        for preset in plan.presets if named else plan.presets[:1]:
+            first = replace(plan, presets=(preset,), suns=plan.suns[:1], judge="shadow")
+            cases = Study(session, first).cases()
+            yield [replace(case, parameters={**case.parameters, "moves": what}) for case in cases]
 
 
 def run(
