@@ -34,8 +34,8 @@ def test_a_slab_on_a_slope_too(ask: Ask) -> None:
 
 
 @pytest.mark.parametrize(("right", "wrong"), [
-    ("pow(1.0 - opacity_of(voxel), geometry_step)", "(1.0 - opacity_of(voxel))"),
-    ("float ds = geometry_step * voxel_size", "float ds = geometry_step"),
+    ("pow(1.0 - opacity_of(voxel), ds / (voxel_size * scale))", "(1.0 - opacity_of(voxel))"),
+    ("ds / (voxel_size * scale)", "ds / scale"),
     ("1.0 - (1.0 - event.opacity) * (1.0 - alpha)", "event.opacity + alpha"),
 ])
 def test_a_wrong_transmittance_is_found(ask: Ask, spoil: Callable, right: str, wrong: str) -> None:
