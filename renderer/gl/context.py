@@ -16,7 +16,7 @@ from renderer.gl import textures
 from renderer.gl.program import ProgramCache
 from renderer.gl.textures import Filter, Wrap
 from renderer.gl.timing import GpuTimer
-from renderer.gl.waiting import waiting
+from renderer.gl.waiting import finisher
 
 OLDEST = (3, 3)
 """Lowest OpenGL version on which anything runs."""
@@ -107,10 +107,9 @@ class GL:
             if hasattr(ctx, name):
                 setattr(ctx, name, self._counting(getattr(ctx, name)))
         self.info = describe(ctx)
-        commands = waiting()
-        self.finish = commands.finish
+        self.finish = finisher()
         """Wait until everything drawn is done, while other threads of Python go on."""
-        self.programs = ProgramCache(ctx, commands if self.info.software else None)
+        self.programs = ProgramCache(ctx, self.finish if self.info.software else None)
         self._timer: GpuTimer | None = None
         self.at_close(self.programs)
 

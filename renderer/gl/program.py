@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import re
 from collections import OrderedDict
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any, cast
 
 import moderngl
@@ -13,7 +13,6 @@ import numpy as np
 
 from renderer.core.errors import ShaderError, UmbrageError
 from renderer.gl.source import Source, without_comments
-from renderer.gl.waiting import Waiting
 
 AnyTexture = moderngl.Texture | moderngl.Texture3D | moderngl.TextureArray | moderngl.TextureCube
 
@@ -40,14 +39,13 @@ class ProgramCache:
     At most `limit` programs are kept; the one longest unasked for is released first. Whoever draws asks `get` again
     each frame (a dictionary look-up) instead of holding a program.
 
-    Where the CPU draws, each drawing is begun at once (`flush`), and waited for before the next one (`finish`): OpenGL
-    would wait there all the same, and stop every other thread of Python meanwhile. Between the two, the next drawing
-    is prepared.
+    Where the CPU draws, `finish` is called after each drawing: the next command would wait for it all the same, and
+    stop every other thread of Python meanwhile.
     """
 
-    def __init__(self, ctx: moderngl.Context, waiting: Waiting | None = None, limit: int = 128) -> None:
+    def __init__(self, ctx: moderngl.Context, finish: Callable[[], None] | None = None, limit: int = 128) -> None:
         self._ctx = ctx
-        self._waiting = waiting
+        self._finish = finish
         self._limit = limit
         self._programs: OrderedDict[str, moderngl.Program] = OrderedDict()
         self._screens: dict[str, moderngl.VertexArray] = {}
@@ -81,11 +79,9 @@ class ProgramCache:
         key = self._keys[id(program)]
         if key not in self._screens:
             self._screens[key] = self._ctx.vertex_array(program, [])
-        if self._waiting is not None:
-            self._waiting.finish()
         self._screens[key].render(mode=moderngl.TRIANGLES, vertices=3)
-        if self._waiting is not None:
-            self._waiting.flush()
+        if self._finish is not None:
+            self._finish()
 
     def release(self) -> None:
         """Free every program."""

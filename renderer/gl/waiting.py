@@ -8,34 +8,19 @@ from __future__ import annotations
 
 import ctypes
 from collections.abc import Callable
-from dataclasses import dataclass
 
 LIBRARY = "libEGL.so.1"
 
 
-@dataclass(frozen=True)
-class Waiting:
-    """Commands for the context that is current on the calling thread, with the interpreter's lock given up.
+def finisher() -> Callable[[], None]:
+    """OpenGL's `glFinish` for the context that is current on the calling thread, with the interpreter's lock given up.
 
-    Attributes:
-        flush: OpenGL's `glFlush`: what was commanded is begun.
-        finish: OpenGL's `glFinish`: what was commanded is done.
+    Where the library does not answer, a function that does nothing: what follows then waits by itself.
     """
-
-    flush: Callable[[], None]
-    finish: Callable[[], None]
-
-
-def waiting() -> Waiting:
-    """Both commands; where the library does not answer, functions that do nothing: what follows waits by itself."""
-    return Waiting(_command("glFlush"), _command("glFinish"))
-
-
-def _command(name: str) -> Callable[[], None]:
     try:
         library = ctypes.CDLL(LIBRARY)
         library.eglGetProcAddress.restype = ctypes.c_void_p
-        address = library.eglGetProcAddress(name.encode())
+        address = library.eglGetProcAddress(b"glFinish")
     except (OSError, AttributeError):
         return _nothing
     return ctypes.CFUNCTYPE(None)(address) if address else _nothing

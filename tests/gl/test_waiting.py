@@ -44,7 +44,7 @@ def test_python_goes_on_while_a_picture_is_drawn(thread: GLThread, monkeypatch: 
     longest_stop(thread)  # compiles the program, which nothing but the driver can do
     assert longest_stop(thread) < 0.5
     with monkeypatch.context() as patch:
-        patch.setattr("renderer.gl.waiting._command", lambda name: waiting._nothing)
+        patch.setattr("renderer.gl.context.finisher", lambda: waiting._nothing)
         with GLThread("stopping") as spoiled:
             if spoiled.info.software:
                 longest_stop(spoiled)
@@ -53,4 +53,4 @@ def test_python_goes_on_while_a_picture_is_drawn(thread: GLThread, monkeypatch: 
 
 def test_without_the_library_it_waits_for_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(waiting, "LIBRARY", "no such library")
-    assert waiting.waiting() == waiting.Waiting(waiting._nothing, waiting._nothing)
+    assert waiting.finisher() is waiting._nothing
