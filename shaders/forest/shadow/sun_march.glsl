@@ -27,10 +27,11 @@ float shadow_visibility(vec3 position, float h, vec2 uv) {
         float above = p.z - ground_height(p.xy);
         float level = clamp(floor(log2(ds / voxel_size) + shadow_bias + jitter.z), 0.0, 5.0);
         float scale = exp2(level);
-        vec3 place = vec3(atlas_coordinate(p.xy), above / layer_height(p.xy)) + scale * offset;
+        float layer = layer_height(p.xy);
+        vec3 place = vec3(atlas_coordinate(p.xy), above / layer) + scale * offset;
         vec4 voxel = textureLod(shadow_voxels, place, level);
         vec2 foot = p.xy + (voxel.yz * 255.0 - 128.0) * 0.0625;
-        float matter = above < canopy_top && place.z < 1.0 && cover_at(foot).x > mod(voxel.w * 255.0, 128.0) / 128.0 ? voxel.x : 0.0;
+        float matter = above < layer && cover_at(foot).x > mod(voxel.w * 255.0, 128.0) / 128.0 ? voxel.x : 0.0;
         tau = above < 0.0 ? 100.0 : tau - log2(1.0 - min(matter, 0.99975586)) * ds / (scale * voxel_size);
         if (above > canopy_top || tau > limit) break;
         start += ds;
