@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from renderer.forest.geometry.ray_march import RayMarch
-from renderer.forest.world_scale import CELL, NODES, VOXEL
+from renderer.forest.world_scale import CANOPY_HEIGHT, CELL, NODES, VOXEL
 from tests.forest import worlds
-from tests.forest.slabs import ALPHA, FILES, NOISE, slab_error, strata, trace
+from tests.forest.slabs import ALPHA, FILES, NOISE, RAYS, slab_error, strata, trace
 from tests.forest.truth import MARCH, Judge
 
 Ask = Callable[..., np.ndarray]
@@ -76,6 +76,37 @@ def test_skipping_what_is_empty_changes_nothing(ask: Ask) -> None:
 
 def test_a_skip_too_long_is_found(ask: Ask) -> None:
     assert skipping_error(ask, 4) > 0.03
+
+
+def depths_met(ask: Ask, level: int, step: float) -> np.ndarray:
+    """How deep [m] below the top of an opaque canopy rays straight down look at the light, at one mip level."""
+    xi, jitter = strata()
+    body = f"""Event event = no_event(xi);
+    geometry_trace(vec3(0.0, 0.0, {CANOPY_HEIGHT:.1f}), vec3(0.0, 0.0, -1.0), 0.0, vec4(jitter, xi, 0.5, 0.5), event);
+    result = event.place.z;"""
+    found = ask([*FILES[:2], "forest/geometry/ray_march.glsl"], body, {"xi": xi, "jitter": jitter},
+                pattern=worlds.uniform(255), techniques={"geometry": RayMarch(step=step)},
+                declarations=f"float filter_level(float footprint) {{ return {level}.0; }}")
+    return CANOPY_HEIGHT - found[:, 0].astype(np.float64)
+
+
+def depth_error(ask: Ask, level: int, step: float) -> float:
+    """Of the mean depth [m]: the first sample of a ray lies anywhere in its first step, of half the canopy at most."""
+    ds = min(step * VOXEL * 2**level, CANOPY_HEIGHT / 2)
+    return abs(float(depths_met(ask, level, step).mean()) - ds / 2)
+
+
+@pytest.mark.parametrize(("level", "step"), [(0, 1.0), (3, 1.0), (5, 1.0), (5, 4.0)])
+def test_coarse_steps_look_at_the_light_in_the_upper_half(ask: Ask, level: int, step: float) -> None:
+    # Two rays of those spread evenly over the step, and the millimetre of float32.
+    assert depth_error(ask, level, step) < 2 * CANOPY_HEIGHT / RAYS + 1e-3
+
+
+def test_steps_as_long_as_their_voxels_are_found(ask: Ask, spoil: Callable) -> None:
+    with spoil("forest/geometry/ray_march.glsl", "min(geometry_step * voxel_size * scale, 0.5 * canopy_height)",
+               "geometry_step * voxel_size * scale"):
+        assert depth_error(ask, 3, 1.0) < 0.1, "they are the same where voxels are small"
+        assert depth_error(ask, 5, 1.0) > 4
 
 
 def bare_hills_missed(ask: Ask) -> float:
