@@ -57,6 +57,24 @@ def time_zones() -> frozenset[str]:
     return frozenset(zoneinfo.available_timezones())
 
 
+def calendar_day(text: str) -> str:
+    """A day of the calendar, year-month-day, as a validator of fields takes it."""
+    try:
+        year = datetime.date.fromisoformat(text).year
+    except ValueError:
+        raise PydanticCustomError("date", "is no day of the calendar") from None
+    if not 1600 <= year <= 2999:
+        raise PydanticCustomError("date", "lies outside the years 1600 to 2999")
+    return text
+
+
+def known_zone(name: str) -> str:
+    """The name of a time zone that is known, as a validator of fields takes it."""
+    if name not in time_zones():
+        raise PydanticCustomError("time_zone", "is not a known time zone; a name is Area/City, as Europe/Paris")
+    return name
+
+
 class SunMoment(Model):
     """The sun at a date, a time and a place."""
 
@@ -81,23 +99,8 @@ class SunMoment(Model):
     longitude: float = param(0.0, label="Longitude", help="Degrees east of Greenwich.", unit="deg", ge=-180, le=180)
     altitude: float = param(0.0, label="Altitude", help="Height above the sea.", unit="m", ge=-500, le=9000)
 
-    @field_validator("date")
-    @classmethod
-    def _calendar(cls, text: str) -> str:
-        try:
-            year = datetime.date.fromisoformat(text).year
-        except ValueError:
-            raise PydanticCustomError("date", "is no day of the calendar") from None
-        if not 1600 <= year <= 2999:
-            raise PydanticCustomError("date", "lies outside the years 1600 to 2999")
-        return text
-
-    @field_validator("time_zone")
-    @classmethod
-    def _known(cls, name: str) -> str:
-        if name not in time_zones():
-            raise PydanticCustomError("time_zone", "is not a known time zone; a name is Area/City, as Europe/Paris")
-        return name
+    _calendar = field_validator("date")(calendar_day)
+    _known = field_validator("time_zone")(known_zone)
 
     @field_validator("time")
     @classmethod

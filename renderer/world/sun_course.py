@@ -19,11 +19,10 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import field_validator
-from pydantic_core import PydanticCustomError
 
 from renderer.core.errors import InputError, LimitError
 from renderer.core.params import Model, param
-from renderer.world.sun import positions, time_zones
+from renderer.world.sun import calendar_day, known_zone, positions
 
 Floats = NDArray[np.float64]
 
@@ -94,23 +93,8 @@ class SunlightPeriod(Model):
         source="Ineichen and Perez 2002",
     )
 
-    @field_validator("start", "end")
-    @classmethod
-    def _calendar(cls, text: str) -> str:
-        try:
-            year = datetime.date.fromisoformat(text).year
-        except ValueError:
-            raise PydanticCustomError("date", "is no day of the calendar") from None
-        if not 1600 <= year <= 2999:
-            raise PydanticCustomError("date", "lies outside the years 1600 to 2999")
-        return text
-
-    @field_validator("time_zone")
-    @classmethod
-    def _known(cls, name: str) -> str:
-        if name not in time_zones():
-            raise PydanticCustomError("time_zone", "is not a known time zone; a name is Area/City, as Europe/Paris")
-        return name
+    _calendar = field_validator("start", "end")(calendar_day)
+    _known = field_validator("time_zone")(known_zone)
 
 
 @dataclass(frozen=True)
