@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from renderer.forest.land_shadow import land_shadow
-from renderer.forest.shadow.voxel_transmittance import VoxelTransmittance
+from renderer.forest.shadow.voxel_transmittance import VoxelTransmittance, kept_elevations
 from renderer.forest.transmittance import (
     AZIMUTHS,
     ELEVATIONS,
@@ -64,25 +64,32 @@ def seen(ask: Ask, sun: dict[str, Any], above: np.ndarray, *, slope: float = 0.0
 
 
 def beer_error(ask: Ask, slope: float = 0.0) -> float:
-    """Worst error over heights and suns against (1 - alpha)^(path / voxel)."""
+    """Worst error over heights and suns against (1 - alpha)^(path / voxel), as a share of what is allowed there.
+
+    The law is known at the baked elevations and read through the four kept ones: alone that costs up to 0.025. Between
+    centres of layers, an optical depth d apart, a straight line errs by d^2 / 8; a byte's rounding and the filter's
+    weights, of 8 bits, by half a byte each.
+    """
     above = np.linspace(1.0, TOP, 24)
+    extinction = -np.log1p(-float(worlds.uniform(ALPHA)["colour_1"][..., 3].max()) / 255) / (2 * VOXEL)
+    table = np.exp(-extinction * (20 - above)[:, None] / np.sin(ELEVATIONS))
     worst = 0.0
     for elevation in (20.0, 41.0, 70.0):
-        sine = np.sin(np.radians(elevation)) - slope * np.cos(np.radians(elevation))
-        exact = (1 - ALPHA / 255) ** ((20 - above) / sine / VOXEL)
+        sun = np.radians(elevation)
+        climb = np.tan(sun) - slope
+        kept = kept_elevations(sun)
+        place = 3 * np.log(np.arctan(climb) / kept[0]) / np.log(kept[3] / kept[0])
+        known = np.array([np.interp(place, np.arange(4), np.interp(kept, ELEVATIONS, row)) for row in table])
+        exact = known ** (1 / (np.cos(sun) * np.hypot(1, climb)))
+        depth = extinction * 2 * VOXEL / np.sin(np.arctan(climb))
         found = seen(ask, worlds.sun(90, elevation), above, slope=slope)
-        worst = max(worst, float(np.abs(found - exact).max()))
+        worst = max(worst, float(np.abs(found - exact).max()) / (1 / 255 + depth**2 / 8))
     return worst
 
 
-def test_an_even_canopy_dims_as_beer_and_lambert_say(ask: Ask) -> None:
-    # Elevations between the kept ones are interpolated, in bytes.
-    assert beer_error(ask) < 0.05
-
-
-@pytest.mark.parametrize("slope", [0.2, -0.3])
-def test_a_slope_turns_the_sun(ask: Ask, slope: float) -> None:
-    assert beer_error(ask, slope) < 0.05
+@pytest.mark.parametrize("slope", [0.0, 0.2, -0.3])
+def test_an_even_canopy_dims_as_beer_and_lambert_say(ask: Ask, slope: float) -> None:
+    assert beer_error(ask, slope) < 1
 
 
 @pytest.mark.parametrize(("right", "wrong"), [
@@ -93,7 +100,7 @@ def test_a_slope_turns_the_sun(ask: Ask, slope: float) -> None:
 ])
 def test_a_wrong_elevation_or_height_is_found(ask: Ask, spoil: Callable, right: str, wrong: str) -> None:
     with spoil(FILE, right, wrong):
-        assert beer_error(ask, -0.3) > 0.06
+        assert beer_error(ask, -0.3) > 3
 
 
 def test_bare_ground_sees_the_sun_and_nothing_does_at_night(ask: Ask) -> None:
