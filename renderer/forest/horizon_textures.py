@@ -10,11 +10,22 @@ from numba import njit
 from renderer.core.technique import Arrays
 
 
+def sectors_beside(azimuth: float, count: int) -> tuple[int, int, float]:
+    """The two sectors whose axes are nearest to an azimuth, and the share of the second.
+
+    Args:
+        azimuth: [rad], clockwise from north. count: of sectors; sector k's axis is at azimuth 2 pi k / count.
+    """
+    place = (azimuth / (2 * math.pi) * count) % count
+    first = int(place) % count
+    return first, (first + 1) % count, place - int(place)
+
+
 def at_azimuth(sectors: np.ndarray, azimuth: float) -> np.ndarray:
     """Horizon elevation at a sun azimuth, linear between the two nearest sector axes.
 
     Args:
-        sectors: horizon elevation [rad], sectors on the first axis, sector k's axis at azimuth 2 pi k / count.
+        sectors: horizon elevation [rad], sectors on the first axis.
         azimuth: of the sun [rad], clockwise from north.
 
     Returns:
@@ -22,11 +33,9 @@ def at_azimuth(sectors: np.ndarray, azimuth: float) -> np.ndarray:
 
     Source: Cohen 2004, section 3.1, Gamma_x(l); the thesis packs the weights in a cube map.
     """
-    count = len(sectors)
-    place = (azimuth / (2 * math.pi) * count) % count
-    first = int(place) % count
-    weight = np.float32(place - int(place))
-    blended: np.ndarray = sectors[first] * (np.float32(1) - weight) + sectors[(first + 1) % count] * weight
+    first, second, share = sectors_beside(azimuth, len(sectors))
+    weight = np.float32(share)
+    blended: np.ndarray = sectors[first] * (np.float32(1) - weight) + sectors[second] * weight
     return blended
 
 
@@ -52,15 +61,14 @@ def stacked_at(soft: np.ndarray, azimuth: float) -> np.ndarray:
     """A soft horizon at a sun azimuth, its heights one above the other in one texture.
 
     Args:
-        soft: uint8 [chi, L, J, I, 3], sector k's axis at azimuth 2 pi k / chi. azimuth: of the sun [rad].
+        soft: uint8 [chi, L, J, I, 3]. azimuth: of the sun [rad].
 
     Returns:
         uint8 (L (J + 2), I, 4): for each height its rows, the last one again before the first and the first after the
         last, so that no fetch mixes heights; the fourth channel is empty.
     """
-    count, levels, rows, columns, _ = soft.shape
-    place = (azimuth / (2 * math.pi) * count) % count
-    first, share = int(place) % count, round((place - int(place)) * 256)
+    _, levels, rows, columns, _ = soft.shape
+    first, second, share = sectors_beside(azimuth, len(soft))
     result = np.zeros((levels, rows + 2, columns, 4), np.uint8)
-    _stack(soft[first], soft[(first + 1) % count], share, result)
+    _stack(soft[first], soft[second], round(share * 256), result)
     return result.reshape(-1, columns, 4)

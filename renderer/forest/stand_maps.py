@@ -179,6 +179,5 @@ def _carried(growth: np.ndarray) -> np.ndarray:
 
 def sunward(elevation: np.ndarray) -> np.ndarray:
     """How much a slope faces the south, in [-1, 1]: 0 on level ground, 1 on a southern slope of 45 degrees or more."""
-    north, _ = np.gradient(elevation, CELL)
-    # Rows run south: ground that rises along them rises to the south, and faces north.
-    return np.clip(-north / math.tan(math.radians(45)), -1, 1)
+    to_south, _ = np.gradient(elevation, CELL)  # rows run south
+    return np.clip(-to_south / math.tan(math.radians(45)), -1, 1)

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from renderer.core.technique import Arrays, Bake
+from renderer.forest.horizon_textures import sectors_beside
 from renderer.forest.pattern_kernels import add_transmittance
 from renderer.forest.tiles import RHOMBI, lattice
 from renderer.forest.world_scale import CANOPY_HEIGHT, TILE_SIDE
@@ -100,9 +101,9 @@ def transmittance_bake(pattern: Bake, coefficients: int) -> Bake:
 def at_sun(baked: Arrays, azimuth: float, elevations: np.ndarray) -> np.ndarray:
     """Transmittance for one azimuth and several elevations over the slope [rad]: bytes (K, J, I, elevations)."""
     basis = baked["basis"]
-    place = (azimuth / (2 * math.pi) * len(basis)) % len(basis)
-    first, share = int(place) % len(basis), np.float32(place - int(place))
-    around = (1 - share) * basis[first] + share * basis[(first + 1) % len(basis)]
+    first, second, part = sectors_beside(azimuth, len(basis))
+    share = np.float32(part)
+    around = (1 - share) * basis[first] + share * basis[second]
     knots = np.interp(np.clip(elevations, ELEVATIONS[0], ELEVATIONS[-1]), ELEVATIONS, np.arange(len(ELEVATIONS)))
     low = np.minimum(knots.astype(int), len(ELEVATIONS) - 2)
     rest = (knots - low).astype(np.float32)[:, None]
