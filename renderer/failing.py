@@ -7,24 +7,33 @@ from __future__ import annotations
 
 import importlib
 import importlib.util
-from collections.abc import Callable
-from dataclasses import asdict, dataclass
+import json
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from renderer.choices import choices_of
-from renderer.comparing import converged, truth
+import numpy as np
+
+from renderer.choices import Choice, choices_of
+from renderer.comparing import converged, displayed, truth
 from renderer.core.errors import InputError
 from renderer.core.failure import Failure
-from renderer.core.registry import phenomenon
+from renderer.core.registry import phenomenon, techniques
 from renderer.steadying import Plan, places, with_choice
-from renderer.study.metrics import relative_rmse
-from renderer.study.stability import flicker
-from renderer.truth import Truth
+from renderer.study.metrics import contrast, relative_rmse, stained
+from renderer.study.stability import changes, flicker
+from renderer.truth import Judge, Truth
+from renderer.world.image import save_image
+from renderer.world.state import SceneState
 
 if TYPE_CHECKING:
     from renderer.session import Session
 
 Tell = Callable[[float, str], None]
+
+LITTLE = (288, 162)
+"""Width and height of either half of a case's picture."""
 
 
 @dataclass(frozen=True)
@@ -33,11 +42,13 @@ class Verdict:
 
     Attributes:
         failure: the case. failing, surviving: the symptom of either.
+        picture: JPEG of both side by side: the pictures, or what flickers in their worst step, brighter in red.
     """
 
     failure: Failure
     failing: float
     surviving: float
+    picture: bytes = field(default=b"", repr=False)
 
     @property
     def holds(self) -> bool:
@@ -46,12 +57,32 @@ class Verdict:
 
     def document(self) -> dict[str, Any]:
         """As JSON values."""
-        return {
-            **asdict(self.failure),
-            "failing_now": self.failing,
-            "surviving_now": self.surviving,
-            "holds": self.holds,
-        }
+        return document(self.failure, {"failing_now": self.failing, "surviving_now": self.surviving})
+
+
+def document(case: Failure, measured: Mapping[str, Any] | None = None) -> dict[str, Any]:
+    """A case as JSON values, with what was measured of it since it was written, if anything."""
+    found = {**asdict(case), **dict.fromkeys(NOW), "holds": None}
+    if measured is not None:
+        failing, surviving = (float(measured[name]) for name in NOW)
+        found |= {NOW[0]: failing, NOW[1]: surviving, "holds": surviving <= case.threshold < failing}
+    return found
+
+
+def keep(folder: Path, verdicts: Sequence[Verdict], machine: Mapping[str, Any]) -> None:
+    """Write what was measured into `results.json`, beside what it holds of other cases, and each case's picture."""
+    folder.mkdir(parents=True, exist_ok=True)
+    path = folder / "results.json"
+    known = {one["name"]: one for one in json.loads(path.read_text(encoding="utf-8"))} if path.is_file() else {}
+    for verdict in verdicts:
+        name = verdict.failure.name
+        known[name] = {**verdict.document(), "machine": dict(machine)}
+        (folder / f"{name}.jpg").write_bytes(verdict.picture)
+    path.write_text(json.dumps(list(known.values()), indent=1), encoding="utf-8")
+
+
+NOW = ("failing_now", "surviving_now")
+"""Names of what was measured last."""
 
 
 def failures(scene: str) -> dict[str, Failure]:
@@ -66,6 +97,42 @@ def failures(scene: str) -> dict[str, Failure]:
     return {case.name: case for case in importlib.import_module(name).FAILURES}
 
 
+def plan_of(scene: str, case: Failure) -> Plan:
+    """The sweep of a case; of a still one the first place alone counts."""
+    steps = case.steps if case.sweep else 1
+    sweep = case.sweep or "camera"
+    return Plan(scene, case.preset, sweep, case.slot, (), case.sets, case.width, steps, case.stride).checked()
+
+
+def choices_in(scene: str, case: Failure) -> tuple[Choice, ...]:
+    """The technique that fails and the one that survives."""
+    return choices_of(scene, case.slot, f"{case.failing},{case.surviving}")
+
+
+def opened(session: Any, scene: str, case: Failure) -> dict[str, Any]:
+    """A case as a viewer opens it.
+
+    Args:
+        session: of which `state` and `validate` are asked.
+
+    Returns:
+        `state`, where it fails; `patch`, which makes that the surviving one; `words` for either technique; and `moves`,
+        a merge patch for each further place of its sweep.
+    """
+    plan = plan_of(scene, case)
+    states = places(session, plan)[: None if case.sweep else 1]
+    pair = choices_in(scene, case)
+    failing, surviving = (with_choice(session, plan, states[0], choice).model_dump(mode="json") for choice in pair)
+    documents = [state.model_dump(mode="json") for state in states]
+    moves = [{name: value for name, value in one.items() if value != documents[0][name]} for one in documents[1:]]
+    known = techniques(scene, case.slot)
+    words = [
+        ", ".join([known[one.kind].title, *(f"{k.replace('_', ' ')} {v}" for k, v in one.parameters.items())])
+        for one in pair
+    ]
+    return {"state": failing, "patch": {case.slot: surviving[case.slot]}, "words": words, "moves": moves}
+
+
 def judge(session: Session, scene: str, name: str, tell: Tell | None = None) -> Verdict:
     """Measure both techniques of a case; their references are shared.
 
@@ -76,23 +143,45 @@ def judge(session: Session, scene: str, name: str, tell: Tell | None = None) -> 
     if name not in known:
         raise InputError("failure", f"{scene} has no such case", ", ".join(known))
     case = known[name]
-    steps = case.steps if case.symptom == "flicker" else 1
-    plan = Plan(scene, case.preset, case.sweep or "camera", case.slot, (), case.sets, case.width, steps).checked()
-    states = places(session, plan)[: 1 if case.symptom == "error" else None]
+    plan = plan_of(scene, case)
+    states = places(session, plan)[: None if case.sweep else 1]
+    against: Judge = "combination" if case.slot == "light" else "shadow"
     truths: list[Truth] = []
-    found = []
-    for choice in choices_of(scene, case.slot, f"{case.failing},{case.surviving}"):
+    found, shown = [], []
+    for choice in choices_in(scene, case):
         drawn = [with_choice(session, plan, state, choice) for state in states]
         for turn, state in enumerate(drawn[len(truths) :]):
             if tell is not None:
                 tell(0.5 * turn / len(drawn), f"{name}: reference {turn + 1} of {len(drawn)}")
-            truths.append(truth(session, state, *plan.size, "shadow"))
-        found.append(_symptom(session, case, plan, drawn, truths))
-    return Verdict(case, *found)
+            truths.append(truth(session, state, *plan.size, against))
+        pictures = [converged(session, state, *plan.size).linear for state in drawn]
+        found.append(symptom(case, pictures, truths))
+        shown.append((drawn[0], pictures))
+    return Verdict(case, found[0], found[1], _picture(session, case, shown, truths))
 
 
-def _symptom(session: Session, case: Failure, plan: Plan, states: list[Any], truths: list[Truth]) -> float:
-    pictures = [converged(session, state, *plan.size).linear for state in states]
-    if case.symptom == "error":
-        return relative_rmse(pictures[0][..., :3], truths[0].linear[..., :3])
-    return flicker(pictures, [one.linear for one in truths]).value
+def symptom(case: Failure, pictures: list[np.ndarray], truths: list[Truth]) -> float:
+    """The number of a case."""
+    if case.symptom == "flicker":
+        return flicker(pictures, [one.linear for one in truths]).value
+    measures: Mapping[str, Callable[[np.ndarray, np.ndarray], float]] = {
+        "error": relative_rmse, "stains": stained, "flatness": lambda image, exact: 1 - contrast(image, exact),
+    }  # fmt: skip
+    return measures[case.symptom](pictures[0][..., :3], truths[0].linear[..., :3])
+
+
+def _picture(
+    session: Session, case: Failure, shown: list[tuple[SceneState, list[np.ndarray]]], truths: list[Truth]
+) -> bytes:
+    """What fails beside what survives."""
+    if case.symptom == "flicker":
+        exact = [one.linear for one in truths]
+        halves = changes([flicker(pictures, exact) for _, pictures in shown], LITTLE[0])
+    else:
+        halves = [_still(session, state) for state, _ in shown]
+    return save_image("jpeg", np.concatenate(halves, axis=1))
+
+
+def _still(session: Session, state: SceneState) -> np.ndarray:
+    picture = session.draw(state, *LITTLE, 16)
+    return displayed(picture.linear, state.view, session.exposure_ev(state))

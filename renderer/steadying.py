@@ -59,6 +59,7 @@ class Plan:
         slot: whose techniques are compared. choices: those.
         sets: what else differs from the preset, by path.
         width: of the pictures, pixels; figures are stated at 128. steps: of the sweep; figures are stated for 16.
+        stride: how many steps are taken at once; figures are stated for one.
     """
 
     scene: str
@@ -69,6 +70,7 @@ class Plan:
     sets: Mapping[str, Any] = field(default_factory=dict)
     width: int = WIDTH
     steps: int = STEPS
+    stride: float = 1.0
 
     @property
     def size(self) -> tuple[int, int]:
@@ -99,10 +101,10 @@ def places(session: Session, plan: Plan) -> list[SceneState]:
     """
     first = session.state(plan.scene, plan.preset, plan.sets)
     if plan.sweep == "camera":
-        return [_aside(first, turn * CAMERA_STEP) for turn in range(plan.steps + 1)]
+        return [_aside(first, turn * CAMERA_STEP * plan.stride) for turn in range(plan.steps + 1)]
     if plan.sweep in SWEEPS:
         azimuth, elevation = (math.degrees(angle) for angle in angles(first.sun))
-        turns = SUN_STEP * np.arange(plan.steps + 1)
+        turns = SUN_STEP * plan.stride * np.arange(plan.steps + 1)
         if plan.sweep == "sun_azimuth":
             suns = [SunDirection(azimuth=float((azimuth + t) % 360), elevation=elevation) for t in turns]
         else:
@@ -119,7 +121,7 @@ def _values(state: SceneState, plan: Plan) -> list[float]:
         value = value[name]
     if isinstance(value, bool) or not isinstance(value, int | float):
         raise InputError("sweep", f"{plan.sweep} is no number", f"{', '.join(SWEEPS)}, or a number's path")
-    step = PARAMETER_STEP * (abs(value) or 1.0)
+    step = PARAMETER_STEP * plan.stride * (abs(value) or 1.0)
     return [float(value + turn * step) for turn in range(plan.steps + 1)]
 
 

@@ -1,11 +1,10 @@
-"""Commands that measure where techniques fail: stability while something moves, and the catalogue of failures."""
+"""Commands that measure techniques one by one: stability, the catalogue of failures, the facts that the page tells."""
 
 from __future__ import annotations
 
 import argparse
 import json
 from collections.abc import Mapping
-from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -39,11 +38,37 @@ def add(commands: Any) -> None:
     command.add_argument("--steps", type=int, default=16, help="of each sweep (default %(default)s, as stated)")
     command.add_argument("--docs", action="store_true", help="copy table and chart into docs/study")
     command.set_defaults(run=stability)
+    command = commands.add_parser("facts", help="cost and error of every technique alone, as the page tells them")
+    command.add_argument("scene", metavar="SCENE")
+    command.add_argument("--size", type=int, default=128, help="side of the pictures, px (default %(default)s)")
+    command.add_argument("--frames", type=int, default=30, help="timed frames of each (default %(default)s)")
+    command.add_argument("--docs", action="store_true", help="copy what was measured into docs/study")
+    command.set_defaults(run=facts)
     command = commands.add_parser("failures", help="where techniques fail, why, and what survives there")
     command.add_argument("scene", metavar="SCENE")
     command.add_argument("--measure", metavar="NAME,..", default="", help="measure them today: all, or names")
+    command.add_argument("--docs", action="store_true", help="copy what was measured into docs/study")
     command.add_argument("--json", action="store_true", help="as JSON")
     command.set_defaults(run=list_failures)
+
+
+def facts(given: argparse.Namespace) -> int:
+    """Measure what the page says below each technique's caption."""
+    from renderer import technique_facts
+
+    if given.frames < 1:
+        raise InputError("--frames", "must be at least one", "9 for a first impression, 30 for stated medians")
+    folder = Path(load().study) / given.scene / "techniques"
+    tell = Teller(given.scene)
+    try:
+        with Session() as session:
+            path = technique_facts.measure(session, given.scene, folder, given.size, given.frames, tell)
+    finally:
+        tell.bar.close()
+    if given.docs:
+        keep(folder, DOCS / "study" / given.scene / "techniques", (path.name,))
+    print(path)
+    return 0
 
 
 def stability(given: argparse.Namespace) -> int:
@@ -79,20 +104,26 @@ def stability(given: argparse.Namespace) -> int:
 def list_failures(given: argparse.Namespace) -> int:
     """List the cases of a scene's catalogue; measured today, they go beside the study, which HTTP serves."""
     from renderer import failing
+    from renderer.study.sweep import provenance
 
     cases = failing.failures(given.scene)
-    found = [{**asdict(case), "failing_now": None, "surviving_now": None, "holds": None} for case in cases.values()]
+    found = [failing.document(case) for case in cases.values()]
     if given.measure:
+        folder = Path(load().study) / given.scene / "failures"
         wanted = names_of("--measure", given.measure, tuple(cases))
         tell = Teller(given.scene)
         try:
             with Session() as session:
-                found = [failing.judge(session, given.scene, name, tell).document() for name in wanted]
+                verdicts = [failing.judge(session, given.scene, name, tell) for name in wanted]
+                machine = provenance(session.gl.info.renderer)
         finally:
             tell.bar.close()
-        path = Path(load().study) / given.scene / "failures.json"
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(json.dumps(found, indent=1), encoding="utf-8")
+        failing.keep(folder, verdicts, machine)
+        found = [verdict.document() for verdict in verdicts]
+        if given.docs:
+            keep(
+                folder, DOCS / "study" / given.scene / "failures", tuple(sorted(path.name for path in folder.iterdir()))
+            )
     print(json.dumps(found, indent=1) if given.json else "\n\n".join(map(_told, found)))
     return 0 if all(one["holds"] is not False for one in found) else 1
 

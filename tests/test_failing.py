@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import io
+import json
 from collections.abc import Iterator
 from dataclasses import replace
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
+from PIL import Image
 
 from renderer import failing
 from renderer.choices import choices_of
@@ -29,6 +33,12 @@ class Pretended:
 
     def validate(self, document: Any) -> Any:
         return Session.validate(self, document)  # type: ignore[arg-type]
+
+    def draw(self, state: Any, width: int, height: int, samples: int) -> Any:
+        return SimpleNamespace(linear=np.full((height, width, 4), 0.5 if state.shadow.bias else 0.0, np.float32))
+
+    def exposure_ev(self, state: Any) -> float:
+        return 0.0
 
 
 @pytest.fixture
@@ -89,6 +99,41 @@ def test_a_mended_technique_is_told(session: Any, monkeypatch: pytest.MonkeyPatc
     found = judge(session, "forest", "depth_map_shades_itself")
     assert not found.holds
     assert not Verdict(replace(found.failure, threshold=0.01), 0.5, 0.2).holds, "nor does one hold that none survives"
+
+
+def test_a_case_keeps_its_numbers_and_its_picture(
+    session: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pretend(monkeypatch, 0.9)
+    (tmp_path / "results.json").write_text(json.dumps([{"name": "older", "failing_now": 1}]))
+    failing.keep(tmp_path, [judge(session, "forest", "depth_map_shades_itself")], {"cores": 2})
+    older, kept = json.loads((tmp_path / "results.json").read_text())
+    assert older["name"] == "older", "what else was measured stays"
+    assert (kept["failing_now"], kept["holds"], kept["machine"]) == (pytest.approx(0.9), True, {"cores": 2})
+    picture = np.asarray(Image.open(tmp_path / "depth_map_shades_itself.jpg"))
+    width, height = failing.LITTLE
+    assert picture.shape == (height, 2 * width, 3)
+    assert picture[:, : width - 8].mean() < 5 < 50 < picture[:, width + 8 :].mean(), "what fails is on the left"
+
+
+def test_what_flickers_is_pictured_on_one_scale(session: Any) -> None:
+    case = failures("forest")["depth_map_scintillates"]
+    exact = [SimpleNamespace(linear=np.ones((27, 48, 4)))] * 2
+
+    def shown(change: float) -> Any:
+        return None, [np.ones((27, 48, 4)), np.full((27, 48, 4), 1 + change)]
+
+    picture = Image.open(io.BytesIO(failing._picture(session, case, [shown(0.4), shown(-0.1)], exact)))
+    left, right = np.asarray(picture)[80, [100, -100]].astype(int)
+    assert left[0] > left[2] + 60, "brighter is red"
+    assert 20 < right[2] - right[0] < left[0] - left[2], "darker is blue, and less of it paler"
+
+
+@pytest.mark.parametrize(("symptom", "expected"), [("error", 0.5), ("stains", 0.25), ("flatness", 1 - 3**0.5 / 2.5)])
+def test_the_number_of_a_case_is_its_symptoms(symptom: Any, expected: float) -> None:
+    exact, picture = (np.array([row])[..., None] * np.ones(4) for row in ([0.5, 0.5, 1.5, 1.5], [1.5, 0.5, 1.5, 1.5]))
+    case = replace(failures("forest")["depth_map_shades_itself"], symptom=symptom)
+    assert failing.symptom(case, [picture], [SimpleNamespace(linear=exact)]) == pytest.approx(expected)  # type: ignore[list-item]
 
 
 def test_an_unknown_case_is_named(session: Any) -> None:

@@ -68,6 +68,11 @@ def test_the_camera_goes_aside_by_a_thousandth_of_its_distance(session: Any, set
     np.testing.assert_allclose(first.forward, last.forward, atol=1e-9)
 
 
+def test_several_steps_may_be_taken_at_once(session: Any) -> None:
+    coarse = [angles(state.sun)[0] for state in places(session, plan("sun_azimuth", steps=2, stride=45.0))]
+    np.testing.assert_allclose(np.degrees(np.diff(coarse)), 11.25)
+
+
 def test_a_parameter_grows_by_hundredths(session: Any) -> None:
     values = [state.ground.tint_strength for state in places(session, plan("ground.tint_strength", steps=2))]
     assert values == pytest.approx([0.35, 0.3535, 0.357])

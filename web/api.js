@@ -34,6 +34,8 @@ const asJson = (body) => ({ method: "POST", headers: { "Content-Type": "applicat
 
 export const scenes = async () => (await request("api/scenes")).json();
 export const scene = async (name) => (await request(`api/scenes/${encodeURIComponent(name)}`)).json();
+export const study = async (name, what = "") => (await request(`api/study/${encodeURIComponent(name)}${what && `/${what}`}`)).json();
+export const text = async (address) => (await request(address)).text();
 export const quantities = async () => (await request("api/measure")).json();
 export const measureSun = async (moment) => (await request("api/measure/sun", asJson(moment))).json();
 

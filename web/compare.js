@@ -1,6 +1,8 @@
 // A beside B: another technique or the reference, by split, blink, difference or error map, with the numbers.
+// Fetched when first wanted.
 
 import * as api from "./api.js";
+import { same } from "./document.js";
 import { el, follow, freshId, say, scaleBar, segments, terms } from "./dom.js";
 import { Progress } from "./notices.js";
 
@@ -26,6 +28,7 @@ export class Compare {
     this.tagB = el("span", { class: "glass tag tag-b", hidden: true });
     screen.root.append(this.handle, this.tagA, this.tagB);
     store.addEventListener("scene", () => this.build());
+    if (store.scene) this.build();
     store.addEventListener("change", () => this.staleReference());
     link.addEventListener("open", () => this.patch && this.link.send({ type: "compare", patch: this.patch }));
   }
@@ -41,12 +44,13 @@ export class Compare {
     this.progress = new Progress(() => this.abort?.abort());
     this.progress.root.hidden = true;
     this.numbers = el("dl", { class: "costs" });
+    this.note = el("div", { class: "form" });
     this.scale = el("div", { class: "control", hidden: true });
     const gain = el("input", { type: "range", id: freshId("gain"), min: 1, max: 16, step: 1, value: 4,
       on: { input: () => this.screen.root.style.setProperty("--gain", gain.value) } });
     this.gainRow = row("Gain of the difference", gain);
     this.root.querySelector(".panel-body").replaceChildren(
-      row("B differs in", this.slot), row("B uses", this.kind),
+      this.note, row("B differs in", this.slot), row("B uses", this.kind),
       el("button", { type: "button", class: "wide", text: "Compare with the reference", on: { click: () => this.reference() } }),
       this.progress.root, modes.group, this.gainRow, this.scale, this.numbers,
       el("button", { type: "button", class: "quiet", text: "Stop comparing", on: { click: () => this.stop() } }));
@@ -72,10 +76,21 @@ export class Compare {
   technique() {
     const slot = this.slot.value;
     const node = this.store.schema.members(this.store.schema.at(slot, this.store.document)).get(this.kind.value);
-    this.patch = { [slot]: this.store.schema.fresh(node) };
+    this.beside({ [slot]: this.store.schema.fresh(node) });
+  }
+
+  /** B is the picture with a patch over it; `words` name A and B where their kinds do not, a note says what to look for. */
+  beside(patch, words = null, note = []) {
+    const [slot] = Object.keys(patch);
+    this.patch = patch;
+    this.words = words && { words, of: this.store.document[slot] };
     this.truth = null;
     this.numbers.replaceChildren();
-    this.link.send({ type: "compare", patch: this.patch });
+    this.note.replaceChildren(...note);
+    this.slot.value = slot;
+    this.fillKinds(false);
+    this.kind.value = patch[slot].kind;
+    this.link.send({ type: "compare", patch });
     this.show(this.mode === "error" ? "split" : this.mode);
   }
 
@@ -102,6 +117,7 @@ export class Compare {
   async take(result) {
     if (this.patch) this.link.send({ type: "compare", patch: null });
     this.patch = null;
+    this.note.replaceChildren();
     const image = async (word) => {
       const [, url] = Object.entries(result.files).find(([name]) => name.startsWith(word));
       return createImageBitmap(await (await fetch(url)).blob());
@@ -122,8 +138,9 @@ export class Compare {
   /** What A and B show, in words. */
   names() {
     const [slot] = Object.keys(this.patch ?? {});
-    const [a, b] = slot ? [this.store.document[slot].kind, this.patch[slot].kind].map((kind) => this.title(slot, kind))
-      : ["Picture", this.mode === "error" ? "Error" : "Reference"];
+    const known = slot && this.words && same(this.words.of, this.store.document[slot]) ? this.words.words : null;
+    const [a, b] = known ?? (slot ? [this.store.document[slot].kind, this.patch[slot].kind].map((kind) => this.title(slot, kind))
+      : ["Picture", this.mode === "error" ? "Error" : "Reference"]);
     say(this.tagA, a);
     say(this.tagB, b);
   }
@@ -165,9 +182,11 @@ export class Compare {
 
   stop() {
     if (this.patch) this.link.send({ type: "compare", patch: null });
+    this.screen.forget();
     this.abort?.abort();
     this.patch = this.truth = null;
     this.numbers?.replaceChildren();
+    this.note?.replaceChildren();
     this.show("split");
   }
 

@@ -1,4 +1,4 @@
-// What can be done here, in one short dialog.
+// What can be done here, in one short dialog. Fetched when first wanted.
 
 import { el, terms } from "./dom.js";
 

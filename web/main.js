@@ -1,25 +1,22 @@
-// Puts the page together; every module gets what it needs from here and knows no other by name.
+// Puts the page together; every module gets what it needs from here and knows no other by name. What the first picture
+// does not need is fetched when it is first wanted.
 
 import * as api from "./api.js";
-import { Compare } from "./compare.js";
 import { el, iconButton, perFrame } from "./dom.js";
+import { Drop } from "./drop.js";
 import { Frames } from "./frames.js";
 import { Gallery } from "./gallery.js";
-import * as help from "./help.js";
 import { Notices } from "./notices.js";
 import { Overlay } from "./overlay.js";
 import { Panels, schemaOf } from "./panels.js";
 import { Pointer } from "./pointer.js";
-import { Probe } from "./probe.js";
 import { Screen } from "./screen.js";
 import { decode, Share } from "./share.js";
 import { Link } from "./socket.js";
 import { Stats } from "./stats.js";
 import { Store } from "./store.js";
-import { SunStudy } from "./sunstudy.js";
 import * as theme from "./theme.js";
 import { SunBar } from "./timeline.js";
-import { Upload } from "./upload.js";
 
 const NARROW = "(max-width: 799px)";
 const DRAGGED_MS = 150;
@@ -32,35 +29,56 @@ let opening = { state: null, scene: null, preset: null };
 const link = new Link(store, () => ({ width: screen.width, height: screen.height, ...opening, ...(store.document ? { state: store.document } : {}) }));
 const notices = new Notices(find("#notices"), link);
 const pointer = new Pointer(find("#surface"), store, link);
-const panels = new Panels(find("#controls"), find("#hint"), store, () => pointer.aspect, () => upload.choose());
+const panels = new Panels(find("#controls"), find("#hint"), store, () => pointer.aspect, () => drop.choose());
 const sunBar = new SunBar(find("#sun"), store, link, () => panels.context());
-const compare = new Compare(find("#compare"), screen, store, link, notices);
 const gallery = new Gallery(find("#gallery"), find("#scene"), store, choose);
-const share = new Share(store, screen, notices);
-const sunStudy = new SunStudy(store);
+const share = new Share(store, notices);
 const dialog = find("#dialog");
-const upload = new Upload(dialog, store, notices);
+const drop = new Drop((file) => upload((part) => part.take(file)));
 new Frames(link, screen, stats);
 new Overlay(find("#corner"), stats);
-new Probe(find("#probe"), pointer, link, store, () => sunBar);
 
-/** Show a dialog whose body `fill` makes. */
-function show(title, fill) {
-  upload.show(title);
-  fill(dialog.querySelector(".dialog-body"), () => dialog.close());
+/** Show a dialog; its body. */
+function show(title, ...content) {
+  const body = dialog.querySelector(".dialog-body");
+  dialog.querySelector("h2").textContent = title;
+  body.replaceChildren(...content);
+  if (!dialog.open) dialog.showModal();
+  return body;
 }
+
+/** A part of the page that is fetched when it is first wanted: what is returned hands it to whoever wants it. */
+function part(load, make) {
+  let made = null;
+  return async (use) => {
+    const module = await load().catch(() => null);
+    if (!module) return notices.toast("This part of the page could not be fetched: try again.", "refusal");
+    made ??= make(module);
+    return use(made);
+  };
+}
+
+const close = () => dialog.close();
+const help = part(() => import("./help.js"), (module) => module);
+const doors = part(() => import("./doors.js"), ({ Doors }) => new Doors(store, screen, notices, share));
+const upload = part(() => import("./upload.js"), ({ Upload }) => new Upload(dialog, show, store, notices));
+const sunStudy = part(() => import("./sunstudy.js"), ({ SunStudy }) => new SunStudy(store));
+const probe = part(() => import("./probe.js"), ({ Probe }) => new Probe(find("#probe"), link, store, () => sunBar));
+const compare = part(() => import("./compare.js"), ({ Compare }) => (window.umbrage.compare = new Compare(find("#compare"), screen, store, link, notices)));
+const studies = part(() => import("./studies.js"), ({ Studies }) => new Studies(store, open));
 
 const tools = {
   undo: iconButton("undo", "Undo", () => store.undo()),
   redo: iconButton("redo", "Redo", () => store.redo()),
-  compare: iconButton("compare", "Compare", () => unfold("compare"), { "aria-expanded": "false", "aria-controls": "compare" }),
-  sunlight: iconButton("sun", "Study the sun over days", () => show("Sun study", (root) => sunStudy.fill(root))),
-  open: iconButton("open", "Open a file", () => upload.choose()),
+  compare: iconButton("compare", "Compare", () => compare(() => unfold("compare")), { "aria-expanded": "false", "aria-controls": "compare" }),
+  sunlight: iconButton("sun", "Study the sun over days", () => sunStudy((made) => made.fill(show("Sun study")))),
+  study: iconButton("chart", "Failures, charts and tables", () => studies((made) => made.fill(show("How right it is, and where it fails")))),
+  open: iconButton("open", "Open a file", () => drop.choose()),
   share: iconButton("share", "Copy a link to this picture", () => share.copyLink()),
-  export: iconButton("export", "Export", () => show("Export", (root, close) => share.fillExport(root, close))),
-  code: iconButton("code", "As code", () => show("This picture as code", (root) => share.fillCode(root))),
+  export: iconButton("export", "Export", () => doors((made) => made.fillExport(show("Export"), close))),
+  code: iconButton("code", "As code", () => doors((made) => made.fillCode(show("This picture as code")))),
   theme: iconButton("theme", "Dark or light", () => notices.toast(theme.next())),
-  help: iconButton("help", "Help", () => show("What you can do", help.fill)),
+  help: iconButton("help", "Help", () => help((made) => made.fill(show("What you can do")))),
   panel: iconButton("panel", "Techniques and parameters", () => unfold("panel"), { "aria-expanded": "true", "aria-controls": "panel" }),
 };
 
@@ -71,6 +89,16 @@ function unfold(name, open = find(`#${name}`).hidden) {
   document.body.classList.toggle("with-panel", !find("#panel").hidden);
   const other = name === "panel" ? "compare" : "panel";
   if (open && matchMedia(NARROW).matches) unfold(other, false);
+}
+
+/** A case of the failure catalogue: what fails as the picture, what survives beside it. */
+function open({ state, patch, words, note }) {
+  close();
+  store.replace(state);
+  return compare((made) => {
+    unfold("compare", true);
+    made.beside(patch, words, note);
+  });
 }
 
 /** A preset of a scene becomes the state; another scene brings its own controls. */
@@ -173,11 +201,11 @@ addEventListener("keydown", (event) => {
 
 function assemble() {
   const rule = () => el("hr", { "aria-hidden": "true" });
-  find("#tools").append(tools.undo, tools.redo, rule(), tools.compare, tools.sunlight, tools.open, rule(), tools.share, tools.export, tools.code, rule(), tools.theme, tools.help, tools.panel);
-  const close = (name) => iconButton("close", "Close", () => { unfold(name, false); tools[name].focus(); });
-  for (const name of ["panel", "compare"]) find(`#${name} .panel-head`).append(close(name));
-  dialog.querySelector(".panel-head").append(iconButton("close", "Close", () => dialog.close()));
-  dialog.addEventListener("click", (event) => event.target === dialog && dialog.close());
+  find("#tools").append(tools.undo, tools.redo, rule(), tools.compare, tools.study, tools.sunlight, tools.open, rule(), tools.share, tools.export, tools.code, rule(), tools.theme, tools.help, tools.panel);
+  const closing = (name) => iconButton("close", "Close", () => { unfold(name, false); tools[name].focus(); });
+  for (const name of ["panel", "compare"]) find(`#${name} .panel-head`).append(closing(name));
+  dialog.querySelector(".panel-head").append(iconButton("close", "Close", close));
+  dialog.addEventListener("click", (event) => event.target === dialog && close());
   find("#time-zones").append(...(Intl.supportedValuesOf?.("timeZone") ?? []).map((value) => el("option", { value })));
   unfold("panel", !matchMedia(NARROW).matches);
   tools.undo.disabled = tools.redo.disabled = true;
@@ -190,7 +218,12 @@ async function start() {
     stale ||= detail.source === "server" || detail.source === "scene";
     follow();
   });
-  stats.addEventListener("frame", waiting, { once: true });
+  stats.addEventListener("frame", () => {
+    waiting();
+    panels.drawn = true;
+    panels.learn();
+  }, { once: true });
+  pointer.addEventListener("pick", ({ detail }) => probe((made) => made.ask(detail)));
   screen.addEventListener("size", () => link.send({ type: "resize", width: screen.width, height: screen.height }));
   link.addEventListener("open", (event) => opened(event).catch((error) => notices.toast(error.message, "refusal")));
   link.addEventListener("message", message);
@@ -209,5 +242,5 @@ async function start() {
   gallery.load().catch(() => null);
 }
 
-window.umbrage = { stats, store, link, screen, compare, encode: () => share.link() };
+window.umbrage = { stats, store, link, screen, encode: () => share.link() };
 start();

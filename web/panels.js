@@ -59,6 +59,8 @@ export class Panels {
     const loose = new Form(context);
     const sections = [];
     this.parts = [...slots, loose];
+    this.pickers = slots;
+    this.learn();
     for (const [name, node] of [...fields].sort(([a], [b]) => LATE.indexOf(a) - LATE.indexOf(b))) {
       if (handled.has(name)) continue;
       const sort = schema.sort(node);
@@ -70,6 +72,13 @@ export class Panels {
       ...(loose.parts.length ? [this.fold("Scene", true, loose.root)] : []),
       ...sections);
     this.refresh();
+  }
+
+  /** What the study measured of each technique; never before the first picture. */
+  async learn() {
+    if (!this.drawn || !this.pickers) return;
+    const { slots, note } = await api.study(this.store.scene.name, "techniques").catch(() => ({ slots: {} }));
+    for (const picker of this.pickers) picker.learn(slots[picker.path] ?? {}, note ?? "");
   }
 
   /** All slots at once. */

@@ -1,4 +1,5 @@
 // Click a point of the picture: what lies there, in numbers, with its horizon and the sun's course where they are known.
+// Fetched with the first click.
 
 import { el, humanise, iconButton, svg, terms } from "./dom.js";
 import { onSky, pathOnSky, winds } from "./sun.js";
@@ -26,7 +27,7 @@ function text(key, value) {
 
 /** A card beside the point clicked. */
 export class Probe {
-  constructor(root, pointer, link, store, sun) {
+  constructor(root, link, store, sun) {
     Object.assign(this, { root, link, store, sun });
     this.id = 0;
     this.body = el("dl", { class: "costs" });
@@ -35,7 +36,6 @@ export class Probe {
     root.append(el("div", { class: "panel-head" }, el("h2", { text: "At this point" }), iconButton("close", "Close", () => this.close())), this.diagram, this.body);
     root.after(this.mark);
     addEventListener("keydown", (event) => event.key === "Escape" && this.close());
-    pointer.addEventListener("pick", (event) => this.ask(event.detail));
     store.addEventListener("change", () => this.root.hidden || this.follow());
     link.addEventListener("message", (event) => event.detail.type === "probe" && event.detail.id === this.id && this.show(event.detail));
   }

@@ -2,6 +2,7 @@
 
 const SOFTWARE_WIDTH = 1280;
 const STILL = 2;
+const MARKS = ["data-drawn", "data-beside", "data-still"];
 
 /** Draws bitmaps; stream 0 on A, stream 1 on B. `size` events tell when another size should be asked for. */
 export class Screen extends EventTarget {
@@ -11,6 +12,7 @@ export class Screen extends EventTarget {
     this.canvases = ["#picture", "#picture-b", "#picture-still"].map((name) => root.querySelector(name));
     this.contexts = this.canvases.map((canvas) => canvas.getContext("2d", { alpha: false }));
     this.limits = { width: SOFTWARE_WIDTH, height: SOFTWARE_WIDTH };
+    this.drawn = [];
     this.width = 0;
     this.height = 0;
     this.measure();
@@ -44,16 +46,21 @@ export class Screen extends EventTarget {
       canvas.height = height;
     }
     this.contexts[stream].drawImage(bitmap, 0, 0);
-    if (stream === 0 && !this.drawnOnce) {
-      this.drawnOnce = true;
-      this.root.dataset.drawn = "yes";
-    }
+    if (this.drawn[stream]) return;
+    this.drawn[stream] = true;
+    this.root.setAttribute(MARKS[stream], "");
   }
 
   /** Lay images that are no frames over A and B, as a reference and the picture it was compared with. */
   still(picture, beside) {
     this.draw(STILL, picture);
     this.draw(1, beside);
+  }
+
+  /** B has nothing to show until its next picture. */
+  forget() {
+    this.drawn[1] = false;
+    this.root.removeAttribute(MARKS[1]);
   }
 
   /** Grey the picture while the connection is away. */

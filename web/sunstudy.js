@@ -1,4 +1,5 @@
 // A study of the sun over the land that is shown: for a range of days, maps of hours and of energy, to read and to keep.
+// Fetched when first wanted.
 
 import * as api from "./api.js";
 import { el, scaleBar } from "./dom.js";

@@ -1,4 +1,5 @@
-// Drop a file anywhere: it is checked by the server and shown with its size before it replaces anything.
+// A file that was dropped or chosen is checked by the server and shown with its size before it replaces anything.
+// Fetched with the first file.
 
 import * as api from "./api.js";
 import { el, humanise, numberIn, terms } from "./dom.js";
@@ -35,28 +36,10 @@ export function placesFor(schema, kind) {
   return found;
 }
 
-/** The drop zone and its dialog. */
+/** The dialog of a file. */
 export class Upload {
-  constructor(dialog, store, notices) {
-    Object.assign(this, { dialog, store, notices });
-    this.input = el("input", { type: "file", hidden: true, "aria-label": "File to open", on: { change: () => this.take(this.input.files[0]) } });
-    this.veil = el("div", { class: "veil", hidden: true }, el("p", { class: "glass", text: "Drop a terrain, mesh or volume" }));
-    document.body.append(this.input, this.veil);
-    addEventListener("dragover", (event) => {
-      event.preventDefault();
-      this.veil.hidden = false;
-    });
-    addEventListener("dragleave", (event) => { if (!event.relatedTarget) this.veil.hidden = true; });
-    addEventListener("drop", (event) => {
-      event.preventDefault();
-      this.veil.hidden = true;
-      this.take(event.dataTransfer.files[0]);
-    });
-  }
-
-  choose() {
-    this.input.value = "";
-    this.input.click();
+  constructor(dialog, show, store, notices) {
+    Object.assign(this, { dialog, show, store, notices });
   }
 
   async take(file, reading = {}) {
@@ -72,12 +55,6 @@ export class Upload {
     } finally {
       this.notices.connection(null);
     }
-  }
-
-  show(title, ...body) {
-    this.dialog.querySelector("h2").textContent = title;
-    this.dialog.querySelector(".dialog-body").replaceChildren(...body);
-    if (!this.dialog.open) this.dialog.showModal();
   }
 
   /** A file that was refused as it is, and could be read otherwise. */

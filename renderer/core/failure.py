@@ -6,8 +6,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
-Symptom = Literal["flicker", "error"]
-"""`flicker` while `sweep` moves, or the `error` of the still picture: relative RMSE against exact shadows."""
+Symptom = Literal["flicker", "error", "stains", "flatness"]
+"""What is measured, against exact shadows under the picture's own light; of a light technique, against all the truth.
+
+`flicker` while `sweep` moves; of the still picture the `error`, its relative RMSE, the `stains`, the share of its
+pixels that are off by more than half of the mean, or the `flatness`: the share of the truth's contrast it lacks."""
 
 
 @dataclass(frozen=True)
@@ -23,7 +26,7 @@ class Failure:
         threshold: the symptom is a failure above it; whoever survives stays below.
         measured: the symptom of the failing and of the surviving one when the case was written.
         cause: one sentence.
-        width: of the pictures, pixels. steps: of the sweep.
+        width: of the pictures, pixels. steps: of the sweep. stride: how many of a sweep's steps are taken at once.
     """
 
     name: str
@@ -40,3 +43,4 @@ class Failure:
     sets: Mapping[str, Any] = field(default_factory=dict)
     width: int = 48
     steps: int = 4
+    stride: float = 1.0

@@ -117,6 +117,24 @@ def chart(lines: Sequence[Mapping[str, Any]], title: str) -> Figure:
     return figure
 
 
+def changes(found: Sequence[Flicker], width: int) -> list[NDArray[np.uint8]]:
+    """What changed in each worst step though the truth did not: blue darker, red brighter, on one scale for all.
+
+    Args:
+        found: of pictures of one size. width: of what is returned, at least, pixels.
+    """
+    limit = max(*(float(np.percentile(np.abs(one.map), 99)) for one in found), 1e-4)
+    larger = -(-width // found[0].map.shape[1])
+    return [_signed(one, limit).repeat(larger, axis=0).repeat(larger, axis=1) for one in found]
+
+
+def _signed(found: Flicker, limit: float) -> NDArray[np.uint8]:
+    """Its map in colours that saturate at `limit`, (H, W, 3)."""
+    scaled = np.clip(found.map / limit, -1, 1) / 2 + 0.5
+    coloured: NDArray[np.uint8] = matplotlib.colormaps["RdBu_r"](scaled, bytes=True)[..., :3]
+    return coloured
+
+
 def strip(before: NDArray[np.uint8], after: NDArray[np.uint8], found: Flicker, top: float = 0.0) -> NDArray[np.uint8]:
     """The worst step as displayed: the picture before, after, and what changed though the truth did not.
 
@@ -128,9 +146,7 @@ def strip(before: NDArray[np.uint8], after: NDArray[np.uint8], found: Flicker, t
         (H, 3 W, 3) uint8, each pixel drawn as often as makes a picture at least `SHOWN` wide.
     """
     limit = top or max(float(np.percentile(np.abs(found.map), 99)), 1e-4)
-    scaled = np.clip(found.map / limit, -1, 1) / 2 + 0.5
-    coloured = matplotlib.colormaps["RdBu_r"](scaled, bytes=True)[..., :3]
-    whole = np.concatenate([before, after, coloured], axis=1)
+    whole = np.concatenate([before, after, _signed(found, limit)], axis=1)
     larger = -(-SHOWN // before.shape[1])
     return np.ascontiguousarray(whole.repeat(larger, axis=0).repeat(larger, axis=1), np.uint8)
 

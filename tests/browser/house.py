@@ -8,6 +8,7 @@ import json
 import os
 import shutil
 import socket
+import tempfile
 import threading
 import time
 import zlib
@@ -47,10 +48,12 @@ class Service:
 
     Args:
         session: outlives the service, so that a restart costs no precomputation.
+        study: folder of a study's results.
     """
 
-    def __init__(self, session: Session) -> None:
+    def __init__(self, session: Session, study: str) -> None:
         self.session = session
+        self.study = study
         self.port = free_port()
         self._server: uvicorn.Server | None = None
         self._thread: threading.Thread | None = None
@@ -62,7 +65,7 @@ class Service:
 
     def start(self) -> None:
         """Serve, and return once it answers."""
-        app = create_app(self.session, Settings(port=self.port))
+        app = create_app(self.session, Settings(port=self.port, study=self.study))
         config = uvicorn.Config(app, host="127.0.0.1", port=self.port, log_level="warning", timeout_graceful_shutdown=1)
         self._server = uvicorn.Server(config)
         self._thread = threading.Thread(target=self._server.run, name="service")
@@ -79,9 +82,9 @@ class Service:
 
 @contextlib.contextmanager
 def service() -> Iterator[Service]:
-    """A server that is stopped, with its session, at the end."""
-    with Session() as session:
-        served = Service(session)
+    """A server that is stopped, with its session, at the end; it has no study but the one that the project keeps."""
+    with Session() as session, tempfile.TemporaryDirectory() as empty:
+        served = Service(session, empty)
         served.start()
         try:
             yield served

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from renderer.core.errors import InputError
-from renderer.study.stability import flicker, strip, table, write
+from renderer.study.stability import changes, flicker, strip, table, write
 
 RNG = np.random.default_rng(2)
 
@@ -82,6 +82,19 @@ def test_a_strip_shows_before_after_and_where_it_flickers() -> None:
     red, blue = found[2, 16 + 3].astype(int), found[4, 16 + 5].astype(int)
     assert red[0] > red[2] + 50
     assert blue[2] > blue[0] + 50
+
+
+def test_changes_share_one_scale() -> None:
+    still = np.ones((2, 4, 6, 3))
+    one, other = still.copy(), still.copy()
+    one[1, :2] += 0.4
+    other[1, :2] -= 0.2
+    left, right = changes([flicker(one, still), flicker(other, still)], 12)
+    assert left.shape == right.shape == (8, 12, 3)
+    assert left[0, 0, 0] > left[0, 0, 2], "brighter is red"
+    assert right[0, 0, 0] < right[0, 0, 2], "darker is blue"
+    assert left[0, 0].sum() < right[0, 0].sum(), "and half as much is paler"
+    np.testing.assert_array_equal(left[-1, -1], right[-1, -1])
 
 
 def test_the_steadiest_comes_first_and_everything_is_written(tmp_path: Path) -> None:
