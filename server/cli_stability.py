@@ -104,7 +104,7 @@ def stability(given: argparse.Namespace) -> int:
 def list_failures(given: argparse.Namespace) -> int:
     """List the cases of a scene's catalogue; measured today, they go beside the study, which HTTP serves."""
     from renderer import failing
-    from renderer.study.sweep import provenance
+    from renderer.benching import provenance
 
     cases = failing.failures(given.scene)
     found = [failing.document(case) for case in cases.values()]
