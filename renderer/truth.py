@@ -32,10 +32,11 @@ SECONDS_PER_RAY = 160e-6
 NOT_THE_WORLD = ("version", "quality", "view", "time")
 """Fields of a state, beside its slots, that change no reference."""
 
-Judge = Literal["combination", "shadow", "matter"]
-"""What a picture is judged for: `combination` against the full physical reference, `shadow` against exact shadows under
-the picture's own light technique, `matter` against the reference without any shadow, so that what stands where, and how
-it is filtered, answers alone."""
+Judge = Literal["combination", "share", "shadow", "matter"]
+"""What a picture is judged for: `combination` against the full physical reference, `share` against the
+same with the sky's light by the pattern's own share of it, `shadow` against exact shadows under the picture's own light
+and, where that is the share, its own sky, `matter` likewise against the reference without any shadow, so that what
+stands where, and how it is filtered, answers alone."""
 
 Progress = Callable[[float, str], None]
 
@@ -132,7 +133,10 @@ def _forest_options(state: Any, judge: Judge) -> dict[str, Any]:
     """A shadow is judged under the picture's own light where the reference has it; everything else by the leaves."""
     own = judge == "shadow" and state.light.kind in ("lambert", "gouraud")
     bare = {"terrain": False, "forest_on_ground": False, "tree_on_tree": False, "within_tree": False}
-    return {"light": state.light.kind if own else "leaf", **(bare if judge == "matter" else {})}
+    # what is judged for its shadow or its matter has the sky's light of its own, where the reference has that
+    shared = judge == "share" or (judge != "combination" and state.sky.kind == "ambient")
+    sky = {} if shared else {"sky": "hemisphere"}
+    return {"light": state.light.kind if own else "leaf", **sky, **(bare if judge == "matter" else {})}
 
 
 def _forest(

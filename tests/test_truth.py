@@ -53,8 +53,9 @@ def baked(alpha: int = 0, cover: float = 0.0) -> dict[str, dict[str, np.ndarray]
     }
 
 
-def made(of: ForestState, inputs: dict[str, Any], width: int = 6, height: int = 4, progress: Any = QUIET) -> Any:
-    return truth_of(bake_truth(truth_bake(of, width, height).arguments, inputs, progress))
+def made(of: ForestState, inputs: dict[str, Any], width: int = 6, height: int = 4, progress: Any = QUIET,
+         judge: Any = "share") -> Any:
+    return truth_of(bake_truth(truth_bake(of, width, height, judge).arguments, inputs, progress))
 
 
 @pytest.mark.parametrize(("elevation", "spoiled"), [(90.0, False), (30.0, False), (30.0, True)])
@@ -69,6 +70,15 @@ def test_a_meadow_sends_back_what_the_closed_form_says(elevation: float, spoiled
     assert found.linear[..., 3] == pytest.approx(1.0)
     assert found.once == pytest.approx(found.linear)
     assert found.standard_error == 0
+
+
+def test_a_meadow_under_rays_to_the_sky_is_as_bright_as_under_its_whole_light() -> None:
+    of = state(sun={"kind": "direction", "azimuth": 40, "elevation": 30})
+    found, even = made(of, baked(), judge="combination"), made(of, baked())
+    assert 0 < found.standard_error < 0.1
+    # 24 pixels of 160 rays each, in which the cosine alone is uncertain
+    assert found.linear.mean() == pytest.approx(even.linear.mean(), rel=5e-3)
+    assert not np.array_equal(found.linear, even.linear)
 
 
 def test_the_world_of_a_state_is_complete() -> None:
@@ -120,7 +130,9 @@ def test_whatever_is_seen_has_a_part_in_it() -> None:
         key(state(light={"kind": "gouraud"}), 64, 64, "shadow"),
     ]
     assert len({key(plain), *others}) == len(others) + 1
-    assert key(plain, 64, 64, "shadow") == key(plain)
+    assert key(plain, 64, 64, "shadow") == key(plain, 64, 64, "share") != key(plain)
+    other = state(sky={"kind": "constant"})
+    assert key(other, 64, 64, "shadow") == key(other) == key(plain), "the sky's light is exact where none is shared"
 
 
 def test_progress_reaches_the_end_and_may_stop_it() -> None:

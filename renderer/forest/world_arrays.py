@@ -9,7 +9,7 @@ import numpy as np
 
 from renderer.core.technique import Arrays
 from renderer.forest.world_scale import CANOPY_HEIGHT, CELL, FADE, REACH, TILE_SIDE, VOXEL
-from renderer.world.sky import sky_for, sky_radiance, sky_sun_disc
+from renderer.world.sky import sky_cells, sky_for, sky_radiance, sky_sun_disc
 from renderer.world.sun import angles, direction
 
 if TYPE_CHECKING:
@@ -58,6 +58,7 @@ def world_arrays(state: ForestState, baked: Mapping[str, Arrays]) -> dict[str, A
         "e_sun": _triple(now.sun_irradiance),
         "e_sky": _triple(now.sky_irradiance),
         "sun": _triple(sun),
+        "sky": sky_cells(now, sun),
         "background": background,
     }
 

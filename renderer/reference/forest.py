@@ -50,7 +50,10 @@ class Options:
         within_tree: a tree shades itself.
         light: `leaf`, what thin leaves lying as the voxels' normals do make of the sun; or techniques' own `lambert` by
             those normals, `gouraud` by the terrain's.
+        sky: `hemisphere`, rays to the sky's own radiance by direction; or `share`, its whole light times the share of
+            it that the pattern holds at the place.
         shadow_rays: strata of sunlight on a leaf's full brightness, one shadow ray each; 0 gives every step its own.
+        sky_rays: strata of an open sky's light on a leaf's full brightness, one ray each.
         steps_per_crossing: steps of a vertical view march through the layer.
         longest_step: of a slanted one, voxels.
         shadow_step: of the march to the sun, voxels.
@@ -63,7 +66,9 @@ class Options:
     tree_on_tree: bool = True
     within_tree: bool = True
     light: Literal["leaf", "lambert", "gouraud"] = "leaf"
+    sky: Literal["hemisphere", "share"] = "share"
     shadow_rays: int = 16
+    sky_rays: int = 16
     steps_per_crossing: int = STEPS_PER_CROSSING
     longest_step: float = LONGEST_STEP
     shadow_step: float = LONGEST_STEP
@@ -120,6 +125,8 @@ def render(
         raise InputError("positions", f"has shape {offsets.shape}", "(S, 2), S at least 1")
     if options.steps_per_crossing < 1 or min(options.longest_step, options.shadow_step) <= 0 or options.shadow_rays < 0:
         raise InputError("options", "steps and rays cannot be negative, nor a step without length")
+    if options.sky_rays < 1:
+        raise InputError("options", "the sky needs at least one ray")
     begun = time.perf_counter()
     scene = prepare(world)
     total: Floats | None = None
@@ -157,18 +164,20 @@ def _sample(
 ) -> None:
     """Add one sub-pixel sample of the whole picture, a few rows at a time on every thread."""
     switches = np.array([options.terrain, options.forest_on_ground, options.tree_on_tree, options.within_tree,
-                         LIGHTS[options.light]])
+                         LIGHTS[options.light], options.sky == "hemisphere"])
     steps = (
         scene.height / options.steps_per_crossing,
         options.longest_step * scene.voxel,
         options.shadow_step * scene.voxel,
     )
-    quantum = 0.0
-    if options.shadow_rays:
-        quantum = float(scene.e_sun.mean()) * NOMINAL_ALBEDO / math.pi / options.shadow_rays
+    bright = NOMINAL_ALBEDO / math.pi
+    quanta = (
+        float(scene.e_sun.mean()) * bright / options.shadow_rays if options.shadow_rays else 0.0,
+        max(float(scene.e_sky.mean()), 1e-300) * bright / options.sky_rays,
+    )
     height = total.shape[0]
     waiting = [
-        pool.submit(rows, scene, switches, *rays, first, min(first + CHUNK, height), steps, quantum, options.seed,
+        pool.submit(rows, scene, switches, *rays, first, min(first + CHUNK, height), steps, quanta, options.seed,
                     number, total, variance)
         for first in range(0, height, CHUNK)
     ]

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from renderer.core.errors import InputError
+from renderer.reference.forest_sky_table import level_irradiance, sky_table
 
 Floats = NDArray[np.float64]
 Bytes = NDArray[np.uint8]
@@ -66,6 +67,8 @@ class ForestWorld:
             skims it must be let go.
         fade: distance from the square over which what lies beyond it fades from view, m: exp(-(distance / fade)^2).
         leaf_transmission: transmittance of the leaves over their reflectance, by channel; wood has none.
+        sky: (E, A, 3) radiance of the sky, W m-2 sr-1: rows of equal steps in the sine of the elevation from the
+            horizon up, columns of equal steps in azimuth clockwise from north, even within each; None is even all over.
         background: radiance behind everything for directions (M, 3) -> (M, 3); None leaves it empty (alpha < 1).
     """
 
@@ -92,6 +95,7 @@ class ForestWorld:
     presence: NDArray[np.floating] | None = None
     growth: NDArray[np.floating] | None = None
     leaf_transmission: Colour3 = (0.0, 0.0, 0.0)
+    sky: NDArray[np.floating] | None = None
 
     def __post_init__(self) -> None:
         """Refuse arrays that do not fit together.
@@ -123,8 +127,21 @@ class ForestWorld:
             raise InputError("fade", "must be a positive length, or infinite")
         if not (np.isfinite(self.elevation).all() and np.isfinite(self.cover).all()):
             raise InputError("elevation", "or cover holds values that are not finite")
+        self._check_sky()
         if not math.isclose(sum(c * c for c in self.sun), 1.0, abs_tol=1e-6):
             raise InputError("sun", "must be a unit vector")
+
+
+    def _check_sky(self) -> None:
+        """Refuse a sky that is no table, or whose light is another than the irradiance told beside it."""
+        if self.sky is None:
+            return
+        if self.sky.ndim != 3 or self.sky.shape[2] != 3 or not self.sky.size:
+            raise InputError("sky", f"has shape {self.sky.shape}", "(E, A, 3)")
+        if not (np.isfinite(self.sky).all() and self.sky.min() >= 0):
+            raise InputError("sky", "holds radiance that is negative or not finite")
+        if not np.allclose(level_irradiance(np.asarray(self.sky, np.float64)), self.e_sky, rtol=0.02):
+            raise InputError("sky", "and e_sky are not the same light")
 
 
 class Scene(NamedTuple):
@@ -157,6 +174,10 @@ class Scene(NamedTuple):
     leaf_transmission: Floats
     e_sun: Floats
     e_sky: Floats
+    sky: Floats
+    sky_rows: Floats
+    sky_columns: Floats
+    sky_power: float
     sun: Floats
     reach: float
     fade: float
@@ -175,6 +196,9 @@ def prepare(world: ForestWorld) -> Scene:
     growth = np.ones_like(z) if world.growth is None else np.ascontiguousarray(world.growth, np.float64)
     # one-sided differences at the edges, central ones elsewhere; rows run south
     slope_y, slope_x = (np.ascontiguousarray(g) for g in np.gradient(z, world.cell))
+    even = np.broadcast_to(np.array(world.e_sky) / math.pi, (1, 1, 3))
+    sky = np.ascontiguousarray(even if world.sky is None else world.sky, np.float64)
+    sky_rows, sky_columns, sky_power = sky_table(sky)
     return Scene(
         elevation=z, slope_x=slope_x, slope_y=-slope_y, cover=cover, share=share, share_cell=share_cell,
         growth=growth, presence=_presence(share, share_cell, len(z) - 1, world.cell), block_top=_block_top(z),
@@ -186,6 +210,7 @@ def prepare(world: ForestWorld) -> Scene:
         tint=float(world.tint_strength), patches=float(world.patches), ground=np.array(world.ground_albedo, np.float64),
         leaf_transmission=np.array(world.leaf_transmission, np.float64),
         e_sun=np.array(world.e_sun, np.float64), e_sky=np.array(world.e_sky, np.float64),
+        sky=sky, sky_rows=sky_rows, sky_columns=sky_columns, sky_power=sky_power,
         sun=np.array(world.sun, np.float64), reach=float(world.reach), fade=float(world.fade))
 
 

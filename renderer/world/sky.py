@@ -41,6 +41,12 @@ et al. 1998), at sunlight's 93 lm W-1."""
 VIEW_SHAPE = (64, 32)
 """Elevations and azimuths of the sky's picture."""
 
+CELLS = (32, 64)
+"""Rows and columns of the sky cut into cells of one solid angle, 5.6 degrees wide."""
+
+WITHIN = 8
+"""Places along each side of such a cell whose mean it takes."""
+
 STEPS = 40
 """Segments of a view ray, short near the eye."""
 
@@ -250,6 +256,26 @@ def sky_radiance(now: SkyNow, sun_direction: Floats, directions: Floats) -> Floa
     y = np.sqrt(np.arcsin(np.clip(directions[..., 2], 0.0, 1.0)) / (0.5 * np.pi)) * (rows - 1)
     x = np.sqrt(azimuth / np.pi) * (columns - 1)
     return atmosphere.bilinear(now.view.astype(np.float64), y, x)
+
+
+def sky_cells(now: SkyNow, sun_direction: Floats) -> Floats:
+    """Mean radiance of the sky in cells of one solid angle, without the sun's disc.
+
+    Args:
+        now, sun_direction: as in `sky_radiance`.
+
+    Returns:
+        (rows, columns, 3) of `CELLS`, W m-2 sr-1: rows are equal steps in the sine of the elevation from the horizon
+        up, columns equal steps in azimuth clockwise from north.
+    """
+    rows, columns = (count * WITHIN for count in CELLS)
+    sine = ((np.arange(rows) + 0.5) / rows)[:, None]
+    azimuth = (np.arange(columns) + 0.5) / columns * 2.0 * np.pi
+    level = np.sqrt(1.0 - sine * sine)
+    directions = np.stack(np.broadcast_arrays(level * np.sin(azimuth), level * np.cos(azimuth), sine), axis=-1)
+    fine = sky_radiance(now, sun_direction, directions)
+    found: Floats = fine.reshape(CELLS[0], WITHIN, CELLS[1], WITHIN, 3).mean(axis=(1, 3))
+    return found
 
 
 def sky_sun_disc(now: SkyNow, sun_direction: Floats, directions: Floats) -> Floats:

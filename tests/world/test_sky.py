@@ -257,3 +257,16 @@ def test_the_disc_in_glsl_is_as_wide_as_the_sun(tables: Tables, gl: GLThread) ->
     found = _sky_in_glsl(gl, now, sun, d, "sky_sun_disc(d)")
     np.testing.assert_allclose(found[[0, 1, 3]], np.broadcast_to(now.disc_radiance, (3, 3)), rtol=1e-6)
     assert (found[[2, 4]] == 0.0).all()
+
+
+@pytest.mark.parametrize("elevation", [4.0, 35.0])
+def test_cells_of_one_solid_angle_send_the_whole_light_of_the_sky(tables: Tables, elevation: float) -> None:
+    sun = np.array([np.cos(np.radians(elevation)), 0.0, np.sin(np.radians(elevation))])  # in the east
+    now = sky_for(tables, math.radians(elevation))
+    cells = sky.sky_cells(now, sun)
+    assert cells.shape == (*sky.CELLS, 3)
+    sine = (np.arange(sky.CELLS[0]) + 0.5) / sky.CELLS[0]
+    level = 2 * np.pi * (sine[:, None] * cells.mean(axis=1)).mean(axis=0)
+    assert level == pytest.approx(now.sky_irradiance, rel=4e-3)
+    quarters = cells[: sky.CELLS[0] // 4].reshape(-1, 4, sky.CELLS[1] // 4, 3).mean(axis=(0, 2, 3))
+    assert quarters[:2].sum() > 1.2 * quarters[2:].sum(), "columns run clockwise from north: the sun's half comes first"
