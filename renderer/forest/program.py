@@ -119,6 +119,13 @@ void main() {
     texel = %s_%s_texel(gl_FragCoord.xy);
 }"""
 
+PASSES_BODY = """{outputs}
+void main() {{
+    vec4 texels[{count}];
+    {slot}_{name}_texel(gl_FragCoord.xy, texels);
+    {copies}
+}}"""
+
 
 Chosen = tuple[tuple[str, type["ForestTechnique"], tuple[tuple[str, str], ...]], ...]
 
@@ -162,10 +169,21 @@ def _composed(
 
 
 @functools.lru_cache(maxsize=64)
-def pass_source(slot: str, name: str, glsl: str, declarations: tuple[str, ...], local: bool = False) -> Source:
-    """The fragment stage of a pass drawn from the sun, `glsl`, with the uniforms it declares; `local` as `_limits`."""
+def pass_source(
+    slot: str, name: str, glsl: str, declarations: tuple[str, ...], local: bool = False, targets: int = 1
+) -> Source:
+    """The fragment stage of a pass drawn from the sun, `glsl`, with the uniforms it declares, into some textures at
+    once; `local` as `_limits`."""
     text = "\n".join([WORLD_DECLARATIONS, uniform_declarations(Ground, "ground"), *declarations])
-    return assemble([glsl], defines=_limits(local), declarations=text, body=PASS_BODY % (slot, name))
+    body = PASS_BODY % (slot, name) if targets == 1 else _several(slot, name, targets)
+    return assemble([glsl], defines=_limits(local), declarations=text, body=body)
+
+
+def _several(slot: str, name: str, targets: int) -> str:
+    """The main function of a pass that fills several textures."""
+    outputs = "\n".join(f"layout(location = {n}) out vec4 texel_{n};" for n in range(targets))
+    copies = "\n    ".join(f"texel_{n} = texels[{n}];" for n in range(targets))
+    return PASSES_BODY.format(outputs=outputs, copies=copies, count=targets, slot=slot, name=name)
 
 
 @functools.lru_cache(maxsize=len(SCOUT_BLOCKS))

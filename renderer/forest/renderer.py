@@ -25,14 +25,14 @@ from renderer.gl.layers import Layers, LayerStore
 from renderer.gl.program import AnyTexture
 from renderer.gl.resident import Resident
 from renderer.gl.source import Source
-from renderer.gl.targets import Target, run_fullscreen
+from renderer.gl.targets import run_fullscreen
 from renderer.world.camera import Orthographic, camera_uniforms
 from renderer.world.sky import sky_for, sky_uniforms
 from renderer.world.sun import angles, direction
 
 if TYPE_CHECKING:
     from renderer.forest.state import ForestState
-    from renderer.forest.technique import ForestTechnique
+    from renderer.forest.technique import ForestTechnique, SunPass
 
 Baked = Mapping[str, BakedArrays]
 Prepared = tuple[Source, dict[str, AnyTexture], dict[str, Any]]
@@ -189,12 +189,13 @@ class ForestRenderer:
             made = self._moment.get(
                 key,
                 lambda p=sun_pass, s=slot, t=sampled: {  # type: ignore[misc]
-                    "target": self._draw_pass(s, p, values, t, state.cover.local_heights)
+                    "drawn": self._draw_pass(s, p, values, t, state.cover.local_heights)
                 },
             )
-            target = made["target"]
-            assert isinstance(target, Target)
-            textures[f"{slot}_{sun_pass.name}"] = target.texture
+            drawn = made["drawn"]
+            assert isinstance(drawn, Layers)
+            names = (f"{slot}_{name}" for name in sun_pass.targets)
+            textures |= dict(zip(names, drawn.textures, strict=True))
             given |= sun_pass.uniforms
         return given
 
@@ -246,19 +247,15 @@ class ForestRenderer:
         place, voxel = self._traces.get(key, sample[0], draw)
         return {"traced_place": place, "traced_voxel": voxel}
 
-    def _draw_into(
-        self, target: Target, source: Source, values: dict[str, Any], textures: dict[str, AnyTexture]
-    ) -> Target:
-        target.use()
-        run_fullscreen(self._gl, source, textures, values)
-        return target
-
     def _draw_pass(
-        self, slot: str, sun_pass: Any, values: dict[str, Any], textures: dict[str, AnyTexture], local: bool
-    ) -> Target:
-        target = Target(self._gl, sun_pass.resolution, sun_pass.resolution * sun_pass.layers, components=1)
-        source = pass_source(slot, sun_pass.name, sun_pass.glsl, sun_pass.declarations, local)
-        return self._draw_into(target, source, values | dict(sun_pass.uniforms), textures)
+        self, slot: str, sun_pass: SunPass, values: dict[str, Any], textures: dict[str, AnyTexture], local: bool
+    ) -> Layers:
+        kinds = tuple(sun_pass.targets.values())
+        layers = Layers(self._gl, sun_pass.resolution, sun_pass.resolution * sun_pass.layers, kinds)
+        source = pass_source(slot, sun_pass.name, sun_pass.glsl, sun_pass.declarations, local, len(kinds))
+        layers.use()
+        run_fullscreen(self._gl, source, textures, values | dict(sun_pass.uniforms))
+        return layers
 
     @staticmethod
     def _pixel(state: ForestState, size: tuple[int, int]) -> dict[str, float]:

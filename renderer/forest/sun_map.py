@@ -22,13 +22,34 @@ LIGHT_DECLARATIONS = (
     "uniform vec3 shadow_up; // unit vector across the light",
 )
 
-PASS_DECLARATIONS = (
-    "uniform float shadow_away; // m, sunward coordinate beyond which nothing casts a shadow",
-    "uniform float shadow_threshold; // opacity",
-)
+AWAY = "uniform float shadow_away; // m, sunward coordinate beyond which nothing casts a shadow"
+
+PASS_DECLARATIONS = (AWAY, "uniform float shadow_threshold; // opacity")
 
 
-class SunMap(ForestTechnique):
+class SunView(ForestTechnique):
+    """What looks at the visible land along the sun's light."""
+
+    def light(self, state: ForestState, baked: Mapping[str, Arrays]) -> Light:
+        """The sun's light over the land."""
+        return light_of(direction(state.sun), baked["terrain"], CELL, CANOPY_HEIGHT)
+
+    def seen(self, state: ForestState, baked: Mapping[str, Arrays], size: tuple[int, int]) -> np.ndarray:
+        """Points (P, 3) that the camera sees [m], or the whole land's corners."""
+        ground = baked["terrain"]
+        points = visible_points(state.camera, ground, CELL, CANOPY_HEIGHT, REACH, size)
+        return or_whole_land(points, ground, CELL, CANOPY_HEIGHT)
+
+    def light_uniforms(self, light: Light) -> dict[str, Any]:
+        """Values of `LIGHT_DECLARATIONS` and `AWAY`."""
+        return {
+            "shadow_right": tuple(map(float, light.right)),
+            "shadow_up": tuple(map(float, light.up)),
+            "shadow_away": light.away,
+        }
+
+
+class SunMap(SunView):
     """A map of what the sun meets first, over what the camera sees."""
 
     textures: ClassVar[Mapping[str, str]] = {"depth": "sampler2D"}
@@ -51,21 +72,6 @@ class SunMap(ForestTechnique):
     )
     strength: float = param(1.0, label="Strength", help="Share of the shadow.", unit="ratio", ge=0, le=1)
 
-    def light(self, state: ForestState, baked: Mapping[str, Arrays]) -> Light:
-        """The sun's light over the land."""
-        return light_of(direction(state.sun), baked["terrain"], CELL, CANOPY_HEIGHT)
-
-    def seen(self, state: ForestState, baked: Mapping[str, Arrays], size: tuple[int, int]) -> np.ndarray:
-        """Points (P, 3) that the camera sees [m], or the whole land's corners."""
-        ground = baked["terrain"]
-        points = visible_points(state.camera, ground, CELL, CANOPY_HEIGHT, REACH, size)
-        return or_whole_land(points, ground, CELL, CANOPY_HEIGHT)
-
     def light_uniforms(self, light: Light) -> dict[str, Any]:
         """Values of `LIGHT_DECLARATIONS` and `PASS_DECLARATIONS`."""
-        return {
-            "shadow_right": tuple(map(float, light.right)),
-            "shadow_up": tuple(map(float, light.up)),
-            "shadow_away": light.away,
-            "shadow_threshold": self.threshold,
-        }
+        return {**super().light_uniforms(light), "shadow_threshold": self.threshold}

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 import numpy as np
 
 from renderer.core.technique import Arrays, Bake, Technique
+from renderer.gl.layers import Kind
 
 if TYPE_CHECKING:
     from renderer.forest.state import ForestState
@@ -19,12 +20,15 @@ class SunPass:
     """A picture drawn from the sun before the frame: the depth pass of a shadow map.
 
     Attributes:
-        name: sampler it fills, as named in the technique's `textures`.
-        glsl: file with `vec4 <slot>_<name>_texel(vec2 pixel)`, relative to the shader root.
+        name: of the pass.
+        glsl: file with `vec4 <slot>_<name>_texel(vec2 pixel)`, relative to the shader root; where it fills several
+            samplers, with `void <slot>_<name>_texel(vec2 pixel, out vec4 texels[N])`.
         declarations: of the uniforms below.
         resolution: width of the target in texels.
         uniforms: what both the pass and the frame read; the pass is drawn again when one of them changes.
         layers: squares of that side which the target holds, one above the other.
+        targets: components and moderngl's type of each sampler it fills, as named in the technique's `textures`, in the
+            order of `texels`.
     """
 
     name: str
@@ -33,6 +37,7 @@ class SunPass:
     resolution: int
     uniforms: Mapping[str, Any]
     layers: int = 1
+    targets: Mapping[str, Kind] = field(default_factory=lambda: {"depth": (1, "f4")})
 
 
 class ForestTechnique(Technique):

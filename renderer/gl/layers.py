@@ -7,11 +7,24 @@ from collections.abc import Callable, Hashable, Sequence
 
 import moderngl
 
+from renderer.core.errors import LimitError
 from renderer.gl.context import GL
 
 Kind = tuple[int, str]
 BYTES = {"f1": 1, "nu2": 2, "f2": 2, "f4": 4}
 """Bytes of a component by moderngl's name of its type."""
+
+
+def check_drawable(gl: GL, width: int, height: int) -> None:
+    """Refuse a size that cannot be drawn into.
+
+    Raises:
+        LimitError: larger than the machine can draw, or nothing.
+    """
+    allowed = min(int(gl.ctx.info["GL_MAX_TEXTURE_SIZE"]), *gl.ctx.info["GL_MAX_VIEWPORT_DIMS"])
+    if not (1 <= width <= allowed and 1 <= height <= allowed):
+        refused = f"a picture of {width} x {height} pixels cannot be drawn here"
+        raise LimitError("size", refused, f"1 to {allowed} a side")
 
 
 class Layers:
@@ -21,9 +34,13 @@ class Layers:
         gl: the context's objects.
         width, height: size in pixels.
         kinds: number of components (1, 2 or 4) and moderngl's name of the component type of each texture.
+
+    Raises:
+        LimitError: larger than the machine can draw.
     """
 
     def __init__(self, gl: GL, width: int, height: int, kinds: Sequence[Kind]) -> None:
+        check_drawable(gl, width, height)
         self.size = (width, height)
         self.textures = [gl.ctx.texture((width, height), components, dtype=dtype) for components, dtype in kinds]
         for texture in self.textures:

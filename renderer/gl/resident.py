@@ -6,10 +6,10 @@ from collections import OrderedDict
 from collections.abc import Callable, Hashable, Mapping
 
 from renderer.gl.context import GL
+from renderer.gl.layers import Layers
 from renderer.gl.program import AnyTexture
-from renderer.gl.targets import Target
 
-Held = AnyTexture | Target
+Held = AnyTexture | Layers
 
 
 class Resident:

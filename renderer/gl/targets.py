@@ -13,8 +13,9 @@ from typing import Any, Literal
 import moderngl
 import numpy as np
 
-from renderer.core.errors import LimitError, UmbrageError
+from renderer.core.errors import UmbrageError
 from renderer.gl.context import GL
+from renderer.gl.layers import check_drawable
 from renderer.gl.program import AnyTexture, bind_textures, set_uniforms
 from renderer.gl.source import Source, assemble
 
@@ -50,10 +51,7 @@ class Target:
 
     def _make(self, width: int, height: int) -> None:
         ctx = self._gl.ctx
-        allowed = min(int(ctx.info["GL_MAX_TEXTURE_SIZE"]), *ctx.info["GL_MAX_VIEWPORT_DIMS"])
-        if not (1 <= width <= allowed and 1 <= height <= allowed):
-            raise LimitError("size", f"a picture of {width} x {height} pixels cannot be drawn here",
-                             f"1 to {allowed} a side")
+        check_drawable(self._gl, width, height)
         self.width, self.height = width, height
         self.texture = ctx.texture((width, height), self._components, dtype=self._dtype)
         self.texture.filter = moderngl.NEAREST, moderngl.NEAREST
