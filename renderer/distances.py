@@ -1,4 +1,5 @@
-"""One stand from near and from far: whether its brightness stays the reference's at every distance."""
+"""One stand from near and from far: whether its brightness stays the reference's, and whether it pops or shimmers on
+the way."""
 
 from __future__ import annotations
 
@@ -13,6 +14,7 @@ from renderer.comparing import converged, truth
 from renderer.core.channel import Progress
 from renderer.core.errors import InputError
 from renderer.study.metrics import relative_rmse
+from renderer.study.stability import flicker
 from renderer.truth import Judge
 from renderer.world.camera import Orbit
 from renderer.world.state import SceneState
@@ -28,6 +30,13 @@ LINES, FIELD_OF_VIEW = 512, 40.0
 
 FINE = 0.4
 """Width of a pixel [m] up to which nothing is filtered: nearer pictures take such pixels, to see more of the stand."""
+
+STRETCHES = (2.0, 20.0, 100.0, 300.0, 425.0, 600.0, 850.0, 1200.0, 1700.0, 2400.0, 4800.0, 10000.0)
+"""Distances [m] at which the camera steps back: near, and about those at which a pixel of LINES becomes one, two, four
+voxels wide, with and without half a level of bias, where a coarser level of the pattern takes over."""
+
+STEP, STEPS = 0.01, 4
+"""Share of its distance by which the camera steps back, and how often, around each of those distances."""
 
 TELL = Callable[[float, str], None]
 
@@ -51,9 +60,30 @@ class Line:
     relative_rmse: float
 
 
-def window(state: SceneState, distance: float, size: int) -> SceneState:
+@dataclass(frozen=True)
+class Stretch:
+    """A few steps back from one distance.
+
+    Attributes:
+        distance: about which the camera steps [m]. footprint: width of a pixel there [m].
+        pop: largest change of the picture's mean radiance in a step beyond the reference's, over the reference's mean.
+        jump: the same of the pixels, root mean square: the worst step's flicker of converged pictures.
+        truth: what the reference's pixels change by, root mean square.
+        shimmer: flicker of single interactive frames. floor: that of the reference with one ray a pixel.
+    """
+
+    distance: float
+    footprint: float
+    pop: float
+    jump: float
+    truth: float
+    shimmer: float
+    floor: float
+
+
+def window(state: SceneState, distance: float, size: int, fine: float = FINE) -> SceneState:
     """The state seen from a distance: `size` lines in the middle of a picture of LINES, with pixels as wide as there;
-    from near, with pixels of FINE, as far as they fit in its field of view.
+    from near, with pixels of `fine` [m], as far as they fit in its field of view.
 
     Raises:
         InputError: its camera has no target to stay with.
@@ -61,7 +91,7 @@ def window(state: SceneState, distance: float, size: int) -> SceneState:
     if not isinstance(state.camera, Orbit):
         raise InputError("camera.kind", "a stand is seen from several distances by an orbit around it", "orbit")
     whole = math.tan(math.radians(FIELD_OF_VIEW) / 2)
-    half = max(whole * size / LINES, min(whole, FINE * size / 2 / distance))
+    half = max(whole * size / LINES, min(whole, fine * size / 2 / distance))
     camera = state.camera.model_copy(update={"distance": distance, "field_of_view": 2 * math.degrees(math.atan(half))})
     return state.model_copy(update={"camera": camera})
 
@@ -99,7 +129,7 @@ def measure(
         lines.append(
             Line(
                 distance,
-                2 * distance * math.tan(math.radians(FIELD_OF_VIEW) / 2) / LINES,
+                footprint(distance),
                 float(picture.mean()),
                 mean,
                 float(picture.mean()) / mean,
@@ -108,6 +138,75 @@ def measure(
             )
         )
     return lines
+
+
+def footprint(distance: float) -> float:
+    """Width of a pixel at a distance in a picture of LINES [m]."""
+    return 2 * distance * math.tan(math.radians(FIELD_OF_VIEW) / 2) / LINES
+
+
+def dolly(
+    session: Session,
+    state: SceneState,
+    distances: Sequence[float] = STRETCHES,
+    size: int = 48,
+    judge: Judge = "combination",
+    tell: TELL | None = None,
+) -> list[Stretch]:
+    """What pops and shimmers while the camera steps back from the stand, with a picture's own pixels; blocks.
+
+    Args:
+        session, state, size, judge, tell: as of `measure`. distances: about which it steps [m].
+
+    Raises:
+        InputError: the camera orbits nothing, or a distance shows nothing of the scene.
+    """
+    found = []
+    for number, distance in enumerate(distances):
+        places = [distance * (1 + STEP) ** (turn - STEPS / 2) for turn in range(STEPS + 1)]
+        truths, pictures = [], []
+        for turn, place in enumerate(places):
+            seen = window(state, place, size, 0.0)
+
+            def inner(progress: Progress, at: float = number + turn / (STEPS + 1), metres: float = place) -> None:
+                if tell is not None:
+                    share = (at + 0.9 * progress.fraction / (STEPS + 1)) / len(distances)
+                    tell(share, f"{metres:.4g} m: {progress.words}")
+
+            truths.append(truth(session, seen, size, size, judge, inner))
+            pictures.append(converged(session, seen, size, size))
+        exact = [one.linear for one in truths]
+        means = np.array([[p.linear[..., :3].mean(), t[..., :3].mean()] for p, t in zip(pictures, exact, strict=True)])
+        if means[:, 1].min() <= 0:
+            raise InputError("distances", f"{distance:g} m shows nothing but background")
+        moved = np.diff(means[:, 0] - means[:, 1]) / means[:, 1].mean()
+        whole = flicker([one.linear for one in pictures], exact)
+        once = flicker([one.once for one in pictures if one.once is not None], exact)
+        floor = flicker([one.once for one in truths], exact)
+        found.append(
+            Stretch(
+                distance,
+                footprint(distance),
+                float(np.abs(moved).max()),
+                whole.worst,
+                whole.truth,
+                once.value,
+                floor.value,
+            )
+        )
+    return found
+
+
+def stretches(found: Sequence[Stretch]) -> str:
+    """What pops and shimmers as a Markdown table."""
+    heads = ["distance, m", "pixel, m", "pop of the mean", "worst jump of the pixels", "the truth's pixels move by",
+             "one frame's shimmer", "that of one ray a pixel"]  # fmt: skip
+    rows = [
+        f"| {one.distance:g} | {one.footprint:.3g} | {one.pop:.4f} | {one.jump:.4f} | {one.truth:.4f} "
+        f"| {one.shimmer:.4f} | {one.floor:.4f} |"
+        for one in found
+    ]
+    return "\n".join(["| " + " | ".join(heads) + " |", "|" + " ---: |" * len(heads), *rows])
 
 
 def table(lines: Sequence[Line]) -> str:

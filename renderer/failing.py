@@ -21,7 +21,7 @@ from renderer.core.errors import InputError
 from renderer.core.failure import Failure
 from renderer.core.registry import phenomenon, techniques
 from renderer.steadying import Plan, places, with_choice
-from renderer.study.metrics import contrast, relative_rmse, stained
+from renderer.study.metrics import relative_rmse, stained
 from renderer.study.stability import changes, flicker
 from renderer.truth import Judge, Truth
 from renderer.world.image import save_image
@@ -162,12 +162,13 @@ def judge(session: Session, scene: str, name: str, tell: Tell | None = None) -> 
 
 def symptom(case: Failure, pictures: list[np.ndarray], truths: list[Truth]) -> float:
     """The number of a case."""
+    exact = [one.linear for one in truths]
     if case.symptom == "flicker":
-        return flicker(pictures, [one.linear for one in truths]).value
-    measures: Mapping[str, Callable[[np.ndarray, np.ndarray], float]] = {
-        "error": relative_rmse, "stains": stained, "flatness": lambda image, exact: 1 - contrast(image, exact),
-    }  # fmt: skip
-    return measures[case.symptom](pictures[0][..., :3], truths[0].linear[..., :3])
+        return flicker(pictures, exact).value
+    if case.symptom == "sway":
+        ratios = [picture[..., :3].mean() / one[..., :3].mean() for picture, one in zip(pictures, exact, strict=True)]
+        return float(np.ptp(ratios) / np.mean(ratios))
+    return {"error": relative_rmse, "stains": stained}[case.symptom](pictures[0], exact[0])
 
 
 def _picture(

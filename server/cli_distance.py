@@ -1,4 +1,4 @@
-"""The command distance: one stand from near and from far against the reference."""
+"""The command distance: one stand from near and from far against the reference, and on the way."""
 
 from __future__ import annotations
 
@@ -24,7 +24,10 @@ def add(commands: Any) -> None:
     """Declare the command."""
     command = commands.add_parser("distance", help="brightness of one stand from near and from far, against the truth")
     state_options(command)
-    command.add_argument("--distances", metavar="M,..", default="", help="metres (default: 2 m to 10 km, six)")
+    command.add_argument("--distances", metavar="M,..", default="", help="metres (default: 2 m to 10 km)")
+    command.add_argument(
+        "--dolly", action="store_true", help="what pops and shimmers while the camera steps back at each distance"
+    )
     command.add_argument("--size", type=int, default=48, help="pixels a side of each view (default %(default)s)")
     command.add_argument(
         "--judge",
@@ -44,7 +47,12 @@ def run(given: argparse.Namespace) -> int:
         raise InputError("--judge", f"{given.judge} is not known", ", ".join(get_args(Judge)))
     if not 8 <= given.size <= LARGEST:
         raise LimitError("--size", f"{given.size} is too small or too large", f"8 to {LARGEST} px")
-    chosen = _metres(given.distances) or distances.DISTANCES
+    measure, table, every = (
+        (distances.dolly, distances.stretches, distances.STRETCHES)
+        if given.dolly
+        else (distances.measure, distances.table, distances.DISTANCES)
+    )
+    chosen = _metres(given.distances) or every
     bar, begun = Bar(), time.monotonic()
 
     def tell(share: float, words: str) -> None:
@@ -54,7 +62,7 @@ def run(given: argparse.Namespace) -> int:
     with Session() as session:
         state = state_of(session, given)
         try:
-            lines = distances.measure(session, state, chosen, given.size, given.judge, tell)
+            lines: Any = measure(session, state, chosen, given.size, given.judge, tell)
         finally:
             bar.close()
     if given.output is not None:
@@ -65,7 +73,7 @@ def run(given: argparse.Namespace) -> int:
             "lines": [dataclasses.asdict(line) for line in lines],
         }
         given.output.write_text(json.dumps(found, indent=1), encoding="utf-8")
-    print(distances.table(lines))
+    print(table(lines))
     return 0
 
 

@@ -68,6 +68,34 @@ def test_the_ratio_of_the_means_is_told_at_every_distance() -> None:
     assert distances.table(lines).count("\n") == 3
 
 
+def test_what_pops_and_shimmers_is_told_beyond_what_the_truth_does(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A truth that brightens by a tenth a step; pictures that follow, but jump after 300 m and shimmer one by one."""
+    begin = 300 * 1.01**-2
+
+    def steps(state: Any) -> float:
+        return math.log(state.camera.distance / begin) / math.log(1.01)
+
+    def truth(session: Any, state: Any, width: int, height: int, judge: str, tell: Any) -> Any:
+        exact = np.full((height, width, 4), 1 + 0.1 * steps(state))
+        return SimpleNamespace(linear=exact, once=exact + 0.02 * (round(steps(state)) % 2))
+
+    def converged(session: Any, state: Any, width: int, height: int) -> Any:
+        picture = np.full((height, width, 4), 1 + 0.1 * steps(state) + 0.5 * (state.camera.distance > 301))
+        picture[::2] += 0.25 * (state.camera.distance > 301)
+        return SimpleNamespace(linear=picture, once=np.full((height, width, 4), 1 + 0.5 * (round(steps(state)) % 2)))
+
+    monkeypatch.setattr(distances, "truth", truth)
+    monkeypatch.setattr(distances, "converged", converged)
+    (found,) = distances.dolly(None, STATE, (300.0,), 16)  # type: ignore[arg-type]
+    assert found.pop == pytest.approx(0.625 / 1.2)
+    assert found.jump == pytest.approx(math.sqrt((0.5**2 + 0.75**2) / 2) / 1.2)
+    assert found.truth == pytest.approx(0.1 / 1.2)
+    assert found.floor == pytest.approx(0.02 / 1.2)
+    assert found.shimmer == pytest.approx(math.sqrt((0.4**2 + 0.6**2) / 2) / 1.2)
+    assert pixel(distances.window(STATE, 2.0, 16, 0.0), 16) == pytest.approx(distances.footprint(2.0)), "its own pixels"
+    assert distances.stretches([found]).count("\n") == 2
+
+
 @pytest.mark.usefixtures("pictures")
 def test_the_command_prints_a_table_and_keeps_the_numbers(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]

@@ -5,7 +5,7 @@ import { el, humanise } from "./dom.js";
 
 const STEP_MS = 120;
 const SYMPTOMS = {
-  flicker: "Flicker", error: "Error", stains: "Pixels off by half of the mean", flatness: "Contrast that is lost",
+  flicker: "Flicker", sway: "Sway of the brightness", error: "Error", stains: "Pixels off by half of the mean",
 };
 const percent = (value) => `${Number((100 * value).toPrecision(2))}\u00a0%`;
 const quiet = (...children) => el("p", { class: "hint-facts" }, children);

@@ -6,11 +6,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
-Symptom = Literal["flicker", "error", "stains", "flatness"]
+Symptom = Literal["flicker", "sway", "error", "stains"]
 """What is measured, against exact shadows under the picture's own light; of a light technique, against all the truth.
 
-`flicker` while `sweep` moves; of the still picture the `error`, its relative RMSE, the `stains`, the share of its
-pixels that are off by more than half of the mean, or the `flatness`: the share of the truth's contrast it lacks."""
+While `sweep` moves, the `flicker`, or the `sway`: by how much the picture's brightness over the truth's differs within
+the sweep, as a share of its mean. Of the still picture the `error`, its relative RMSE, or the `stains`, the share of
+its pixels that are off by more than half of the mean."""
 
 
 @dataclass(frozen=True)
@@ -22,7 +23,7 @@ class Failure:
         slot: whose techniques are compared.
         failing, surviving: kind and parameters of each, as `kind:name=value:..`.
         preset: of the scene. sets: what else differs from it, by path.
-        symptom: what is measured. sweep: what moves, for flicker.
+        symptom: what is measured. sweep: what moves, where something does.
         threshold: the symptom is a failure above it; whoever survives stays below.
         measured: the symptom of the failing and of the surviving one when the case was written.
         cause: one sentence.

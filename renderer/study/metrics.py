@@ -98,21 +98,6 @@ def stained(image: NDArray[np.floating], reference: NDArray[np.floating], off: f
     return float((np.abs(picture - exact).mean(axis=-1) > off * _mean(exact)).mean())
 
 
-def contrast(image: NDArray[np.floating], reference: NDArray[np.floating]) -> float:
-    """Standard deviation over the mean of the picture, over that of its reference; of the mean over the channels.
-
-    Args:
-        image, reference: (H, W, 3 or 4) linear radiance, W m-2 sr-1.
-
-    Raises:
-        InputError: as `relative_rmse`, or a reference without any contrast.
-    """
-    picture, exact = (one.mean(axis=-1) for one in _colours(image, reference))
-    if exact.std() == 0 or exact.mean() <= 0 or picture.mean() <= 0:
-        raise InputError("reference", "is black or even: a contrast relative to its own has no meaning")
-    return float((picture.std() / picture.mean()) / (exact.std() / exact.mean()))
-
-
 def best_gain(image: NDArray[np.floating], reference: NDArray[np.floating]) -> float:
     """The factor on `image` that brings it closest to `reference` in the least-squares sense (1 for a black image).
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from renderer.core.errors import InputError
-from renderer.study.metrics import best_gain, contrast, error_map, flip, relative_rmse, stained
+from renderer.study.metrics import best_gain, error_map, flip, relative_rmse, stained
 
 
 def test_relative_rmse_by_hand() -> None:
@@ -52,15 +52,6 @@ def test_stains_are_the_pixels_off_by_more_than_half_of_the_mean() -> None:
     image[1, 0] += [0.0, 0.0, 2.9]
     assert stained(image, exact) == pytest.approx(0.2), "by their mean over the channels"
     assert stained(image, exact, 0.4) == pytest.approx(0.4)
-
-
-def test_contrast_is_that_of_the_truth_at_any_brightness() -> None:
-    exact = np.random.default_rng(1).uniform(0.5, 1.5, (8, 8, 3))
-    assert contrast(3 * exact, exact) == pytest.approx(1)
-    assert contrast(exact.mean() + 0.25 * (exact - exact.mean()), exact) == pytest.approx(0.25)
-    assert contrast(np.ones_like(exact), exact) == 0
-    with pytest.raises(InputError, match="even"):
-        contrast(exact, np.ones_like(exact))
 
 
 def test_best_gain_recovers_a_factor_and_is_least_squares() -> None:
