@@ -91,6 +91,20 @@ def gallery(page: Page) -> None:
     house.until(page, "[...document.querySelectorAll('#gallery img')].every((image) => image.naturalWidth > 0)")
 
 
+def studies(page: Page) -> None:
+    """Cases of failure, charts and tables."""
+    button(page, "Failures, charts and tables")
+    page.locator(".case").first.wait_for()
+
+
+def failure(page: Page) -> None:
+    """A case of failure beside what survives."""
+    studies(page)
+    page.locator(".case").first.click()
+    house.until(page, "document.querySelector('#stage').hasAttribute('data-beside')")
+    house.settled(page)
+
+
 def bare(page: Page) -> None:
     """Nothing but the picture."""
     page.locator("#surface").focus()
@@ -99,7 +113,7 @@ def bare(page: Page) -> None:
 
 STATES: dict[str, Act] = {
     "gallery": gallery, "techniques": cards, "parameters": folds, "compare": compare, "difference": difference,
-    "refused": refused, "lost": lost, "point": point, "bare": bare,
+    "studies": studies, "failure": failure, "refused": refused, "lost": lost, "point": point, "bare": bare,
     "costs": lambda page: button(page, "What a picture costs"),
     "sun": lambda page: button(page, "Sun, date and place in numbers"),
     "code": lambda page: button(page, "As code"),
