@@ -58,7 +58,7 @@ uniform float pixel_angle;        // rad, width of a pixel in perspective
 uniform float pixel_width;        // m, width of a pixel in a parallel view
 uniform vec2 picture_size;
 uniform vec2 pixel_offset;        // of the sample within its pixel, from the top-left corner
-uniform float sample_shift;       // [0, 1), turns the jitter from sample to sample"""
+uniform float sample_shift;       // number of the sample, which turns the jitter"""
 
 RAY_OF_PIXEL = """// From sample to sample the low-discrepancy sequence R4 of Roberts 2018; from pixel to pixel
 // the interleaved gradient noise of Jimenez 2014, "Next Generation Post Processing in Call of Duty".

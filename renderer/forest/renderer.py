@@ -43,6 +43,9 @@ SCOUTS_KEPT = 1 << 20
 TRACES_KEPT = 64 << 20
 """Bytes of traced samples kept: sixteen of 512 x 512, so that a moved sun only lights them again."""
 
+MOMENTS_KEPT = 256 << 20
+"""Bytes kept of what suns ask for. One frame asks for 200 MB at most: a Fourier opacity map of 2,048 texels a side."""
+
 
 class ForestRenderer:
     """Textures of what was baked, and the frames drawn with them; one serves every view of the process."""
@@ -50,7 +53,7 @@ class ForestRenderer:
     def __init__(self, gl: GL) -> None:
         self._gl = gl
         self._baked = Resident(gl, 24)
-        self._moment = Resident(gl, 24)
+        self._moment = Resident(gl, 24, MOMENTS_KEPT)
         self._scouts = {side: LayerStore(gl, ((1, "f4"),), SCOUTS_KEPT) for side in SCOUT_BLOCKS}
         self._traces = LayerStore(gl, ((2, "f4"), (4, "nu2")), TRACES_KEPT)
         self._bounds: dict[tuple[str, str], dict[str, Any]] = {}

@@ -11,7 +11,7 @@ from renderer.core.errors import LimitError
 from renderer.gl.context import GL
 
 Kind = tuple[int, str]
-BYTES = {"f1": 1, "nu2": 2, "f2": 2, "f4": 4}
+BYTES = {"f1": 1, "nu2": 2, "f2": 2, "f4": 4, "i4": 4, "u4": 4}
 """Bytes of a component by moderngl's name of its type."""
 
 

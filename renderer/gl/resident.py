@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from collections import OrderedDict
 from collections.abc import Callable, Hashable, Mapping
 
 from renderer.gl.context import GL
-from renderer.gl.layers import Layers
+from renderer.gl.layers import BYTES, Layers
 from renderer.gl.program import AnyTexture
 
 Held = AnyTexture | Layers
@@ -18,10 +19,12 @@ class Resident:
     Args:
         gl: the context's objects.
         limit: entries kept; what a frame asks for must fit in it.
+        bytes_kept: size of all entries together, likewise; the newest is kept whatever its size.
     """
 
-    def __init__(self, gl: GL, limit: int) -> None:
+    def __init__(self, gl: GL, limit: int, bytes_kept: float = math.inf) -> None:
         self._limit = limit
+        self._bytes_kept = bytes_kept
         self._held: OrderedDict[Hashable, Mapping[str, Held]] = OrderedDict()
         gl.at_close(self)
 
@@ -31,9 +34,9 @@ class Resident:
             self._held.move_to_end(key)
             return self._held[key]
         made = make()
-        while len(self._held) >= self._limit:
-            self._free(self._held.popitem(last=False)[1])
         self._held[key] = made
+        while len(self._held) > max(self._limit, 1) or (len(self._held) > 1 and self._bytes() > self._bytes_kept):
+            self._free(self._held.popitem(last=False)[1])
         return made
 
     def release(self) -> None:
@@ -41,6 +44,15 @@ class Resident:
         while self._held:
             self._free(self._held.popitem()[1])
 
+    def _bytes(self) -> int:
+        return sum(bytes_of(held) for objects in self._held.values() for held in objects.values())
+
     def _free(self, objects: Mapping[str, Held]) -> None:
         for held in objects.values():
             held.release()
+
+
+def bytes_of(held: Held) -> int:
+    """Size of the textures' finest levels."""
+    textures = held.textures if isinstance(held, Layers) else [held]
+    return sum(int(math.prod(one.size)) * one.components * BYTES[one.dtype] for one in textures)
