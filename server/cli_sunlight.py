@@ -14,9 +14,7 @@ from renderer.core.errors import InputError
 from renderer.session import Session
 from server.cli_draw import state_of, state_options, value_of, write
 from server.cli_progress import Bar
-
-MAPS = ("hours", "insolation")
-"""Maps that are written as GeoTIFF and as a picture; the `.npz` has all."""
+from server.sun_maps import MAPS, map_files
 
 FILES = ("terrain", "canopy")
 
@@ -83,12 +81,11 @@ def run(given: argparse.Namespace) -> int:
 
 
 def files_of(found: Any) -> dict[str, bytes]:
-    """What a study leaves, by file name."""
+    """What a study leaves, by file name: its maps, all arrays, and the numbers."""
     buffer = io.BytesIO()
     np.savez(buffer, meta=np.array(json.dumps(dict(found.meta))), **found.arrays)
-    files = {f"{name}.tif": found.geotiff(name) for name in MAPS}
-    files |= {f"{name}.png": found.picture(name) for name in MAPS}
-    return {**files, "sunlight.npz": buffer.getvalue(), "sunlight.json": json.dumps(found.numbers, indent=1).encode()}
+    numbers = json.dumps(found.numbers, indent=1).encode()
+    return {**map_files(found), "sunlight.npz": buffer.getvalue(), "sunlight.json": numbers}
 
 
 def _existing(name: str, path: Path) -> Path:

@@ -18,16 +18,14 @@ from server.jobs import Job, Result
 from server.problems import Json, Missing
 from server.routes.measure import asset_files
 from server.routes.render import Name, StateRequest, state_of
+from server.sun_maps import MAPS, map_files
 
 router = APIRouter(prefix="/api/jobs", tags=["jobs"])
 REFERENCE_PIXELS = 256 * 256
-"""A reference is computed on the CPU: up to 256 pixels wide it is affordable (study.md)."""
+"""A reference is computed on the CPU: up to 256 pixels wide it takes minutes."""
 Identity = Path(max_length=64)
 MEDIA = {".png": "image/png", ".tif": "image/tiff", ".npy": "application/x-npy"}
 """Media type of a job's files, by their ending."""
-
-SUN_MAPS = ("hours", "insolation")
-"""Maps that a study of the sun leaves, each as GeoTIFF, picture and array."""
 
 
 class JobRequest(StateRequest):
@@ -79,10 +77,8 @@ def _reference(hub: Hub, job: Job, state: Any, asked: JobRequest) -> Result:
 def _sunlight(hub: Hub, job: Job, state: Any, asked: JobRequest) -> Result:
     files = asset_files(hub, asked.files or {})
     found = hub.session.sunlight(asked.period or {}, state, files, job.advance)
-    left = {f"{name}.tif": found.geotiff(name) for name in SUN_MAPS}
-    left |= {f"{name}.png": found.picture(name) for name in SUN_MAPS}
-    left |= {f"{name}.npy": array_bytes(found.arrays[name]) for name in SUN_MAPS}
-    return Result(left, dict(found.numbers))
+    arrays = {f"{name}.npy": array_bytes(found.arrays[name]) for name in MAPS}
+    return Result(map_files(found) | arrays, dict(found.numbers))
 
 
 WORK: dict[str, Callable[[Hub, Job, Any, JobRequest], Result]] = {
