@@ -38,6 +38,11 @@ def test_no_violation_with_every_panel_open(open_page: Open, scheme: str) -> Non
     open_everything(page)
     assert violations(page) == []
     page.get_by_role("button", name="As code").click()
+    page.locator(".snippet").first.wait_for()
+    assert violations(page) == []
+    page.keyboard.press("Escape")
+    page.get_by_role("button", name="Failures, charts and tables").click()
+    page.locator(".case").first.wait_for()
     assert violations(page) == []
 
 
