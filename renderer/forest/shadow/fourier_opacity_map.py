@@ -60,7 +60,7 @@ class FourierOpacityMap(SunView):
         label="Level bias",
         help="Added to the mip level whose voxels are as wide as a texel; negative is sharper.",
         cost="host",
-        ge=-4,
+        ge=-3,
         le=2,
         step=0.25,
     )

@@ -11,11 +11,12 @@
 #include "forest/crossing.glsl"
 
 const float NEVER = -1e9;
-// Coarser levels would fill an eighth of the layer's height with one voxel.
-const float COARSEST = 2.0;
 
-// Optical depth behind which the rest is dark: a four-hundredth of the light.
-const float DARK = 6.0;
+// Coarser levels would fill most of the layer's height with one voxel.
+const float COARSEST = 3.0;
+
+// Optical depth behind which the rest is dark, and does not count: less than a hundredth of the light; what is opaque would ring.
+const float DARK = 5.0;
 
 const int WAVES = (SHADOW_COEFFICIENTS - 1) / 2;
 
@@ -24,7 +25,6 @@ const int WAVES = (SHADOW_COEFFICIENTS - 1) / 2;
 vec3 crossing_of(vec3 origin, vec3 direction, float t) {
     float left = -1.0;
     float again = -1.0;
-    float previous = t;
     bool was_over = false;
     int found = t < 0.0 ? 0 : 1;
     for (int i = 0; i < ENTRY_STEPS && found == 1; i++) {
@@ -50,16 +50,18 @@ void shadow_waves_texel(vec2 pixel, out vec4 texels[1 + (SHADOW_COEFFICIENTS + 3
     vec3 direction = -sun_direction;
     float t = canopy_entry(origin, direction, 0.0);
     vec3 crossing = crossing_of(origin, direction, t);
-    float level = floor(clamp(log2(texel / voxel_size) + shadow_level, 0.0, COARSEST) + 0.5);
+    // Steps begin anywhere in the first one, or their phase against the layers of voxels would draw contours on the slopes; and levels
+    // are whole ones at random, or their borders would show.
+    vec2 lattice = mod(floor(line / shadow_window.zw), 1024.0);
+    vec2 noise = fract(52.9829189 * fract(dot(lattice, vec2(0.06711056, 0.00583715))) * vec2(1.0, 7.0));
+    float level = floor(clamp(log2(texel / voxel_size) + shadow_level, 0.0, COARSEST) + noise.y);
     float ds = voxel_size * exp2(level);
     float rate = voxel_rate(direction) / exp2(level);
     float values[SHADOW_COEFFICIENTS];
     for (int k = 0; k < SHADOW_COEFFICIENTS; k++) values[k] = 0.0;
     float first = NEVER;
     float range = 1.0;
-    // Steps begin anywhere in the first one, or their phase against the layers of voxels would draw contours on the slopes.
-    vec2 lattice = mod(floor(line / shadow_window.zw), 1024.0);
-    t += ds * fract(52.9829189 * fract(dot(lattice, vec2(0.06711056, 0.00583715))));
+    t += noise.x * ds;
     int found = crossing.z < 0.0 ? 0 : 1;
     for (int i = 0; i < MARCH_STEPS && found == 1; i++) {
         vec3 p = origin + t * direction;
@@ -71,14 +73,14 @@ void shadow_waves_texel(vec2 pixel, out vec4 texels[1 + (SHADOW_COEFFICIENTS + 3
         vec4 voxel = voxel_at(vec3(atlas_coordinate(p.xy), clamp(above / layer, 0.0, 1.0)), level);
         vec2 stand = stand_of(p.xy, voxel);
         float depth = above > layer ? 0.0 : -log(1.0 - opacity_of(voxel)) * stand.x;
-        found = above <= 0.0 || t >= crossing.z || values[0] > 2.0 * DARK ? 2 : 1;
+        found = above <= 0.0 || t >= crossing.z || values[0] >= 1.999 * DARK ? 2 : 1;
         if (found == 1) {
             if (depth > 0.0) {
                 first = first == NEVER ? t - 0.5 * ds : first;
                 range = max(crossing.z - crossing.y + max(crossing.x - first, 0.0), 0.1);
                 float d = (clamp(t - first, 0.0, max(crossing.x - first, 0.0)) + max(t - crossing.y, 0.0)) / range;
                 vec2 turn = vec2(cos(6.283185307179586 * d), sin(6.283185307179586 * d));
-                vec2 wave = vec2(2.0 * depth, 0.0);
+                vec2 wave = vec2(min(2.0 * depth, 2.0 * DARK - values[0]), 0.0);
                 values[0] += wave.x;
                 for (int k = 0; k < WAVES; k++) {
                     wave = vec2(wave.x * turn.x - wave.y * turn.y, wave.x * turn.y + wave.y * turn.x);
