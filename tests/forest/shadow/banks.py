@@ -7,7 +7,9 @@ from typing import Any
 
 import numpy as np
 
+from renderer.forest.sun_map import SunView
 from tests.forest import worlds
+from tests.forest.truth import MARCH, Judge
 
 Paint = Callable[..., Any]
 Ask = Callable[..., np.ndarray]
@@ -41,6 +43,32 @@ def edge_error(paint: Paint, kind: str, elevation: float = 30.0, **shadow: Any) 
     x = exact + (np.arange(96) + 0.5 - 48) * 0.25
     dark = x[shares < 0.5]
     return abs(float(dark.max() if len(dark) else x[0]) + 0.125 - exact)
+
+
+def far_side_is_lit(paint: Paint, kind: str) -> None:
+    """Assert that a sun from the other side lights the foot of the bank."""
+    np.testing.assert_allclose(lit(paint, bank(), worlds.sun(90, 30), 26.0, kind), 1, atol=1e-3)
+
+
+def holds_cost(judge: Judge, kind: str, cost: float, fixed: dict[str, Any]) -> None:
+    """Assert that a depth map is as near to the reference as it was measured, and with a late threshold not."""
+    judge.holds("shadow", kind, MARCH, cost, against="full", shadow=worlds.technique("shadow", kind, **fixed))
+    late = {"shadow": worlds.technique("shadow", kind, **{**fixed, "threshold": 0.99})}
+    assert judge.distance("shadow", kind, "full", **late) > 1.1 * (MARCH + cost)
+
+
+def stands_still_when_snapped(technique: Callable[..., SunView]) -> None:
+    """Assert that only a snapped map keeps its texels while the camera moves."""
+
+    def corner(x: float, snapping: bool) -> np.ndarray:
+        made = worlds.state(camera=worlds.map_view(x, -50, 60), sun=worlds.sun(200, 40))
+        found = technique(snapping=snapping).sun_pass(made, {"terrain": worlds.ground()}, (64, 64))
+        assert found is not None
+        low, side = np.split(np.array(found.uniforms["shadow_window"]), 2)
+        return np.asarray(low / side % 1)
+
+    assert np.abs(corner(100.0, True) - corner(100.37, True)).max() < 1e-6
+    assert np.abs(corner(100.0, False) - corner(100.37, False)).max() > 0.01
 
 
 def first_in_slab(ask: Ask, alpha: int, threshold: float, elevation: float, texel: float = 0.5) -> float:

@@ -10,8 +10,8 @@ import pytest
 
 from renderer.forest.shadow.depth_shadow_map import DepthShadowMap
 from tests.forest import worlds
-from tests.forest.shadow.banks import bank, edge_error, lit
-from tests.forest.truth import MARCH, Judge
+from tests.forest.shadow.banks import bank, edge_error, far_side_is_lit, holds_cost, lit, stands_still_when_snapped
+from tests.forest.truth import Judge
 
 Paint = Callable[..., Any]
 Ask = Callable[..., np.ndarray]
@@ -19,6 +19,7 @@ KIND = "depth_shadow_map"
 FIXED = {"resolution": 1024, "threshold": 0.3, "bias": 0.3, "texel_bias": 0.25}
 """Pinned, so that a tuned default leaves the measured cost alone."""
 COST = 0.095
+"""Light arrives wholly or not at all; bias; texels without a filter."""
 PASS = "forest/shadow/depth_shadow_map_depth.glsl"
 FRAME = "forest/shadow/depth_shadow_map.glsl"
 WALK = "forest/sun_walk.glsl"
@@ -45,7 +46,7 @@ def test_a_wrong_shadow_is_found(paint: Paint, spoil: Callable, file: str, right
 
 
 def test_a_sun_from_the_other_side_lights_the_foot_of_the_bank(paint: Paint) -> None:
-    np.testing.assert_allclose(lit(paint, bank(), worlds.sun(90, 30), 26.0, KIND), 1, atol=1e-3)
+    far_side_is_lit(paint, KIND)
 
 
 def test_a_slope_does_not_shade_itself(paint: Paint) -> None:
@@ -121,31 +122,11 @@ def test_no_sun_below_the_horizon_and_no_shadow_without_strength(paint: Paint) -
 
 
 def test_only_a_snapped_map_keeps_its_texels_while_the_camera_moves() -> None:
-    def corner(x: float, snapping: bool) -> np.ndarray:
-        made = worlds.state(camera=worlds.map_view(x, -50, 60), sun=worlds.sun(200, 40))
-        found = DepthShadowMap(snapping=snapping).sun_pass(made, {"terrain": worlds.ground()}, (64, 64))
-        assert found is not None
-        low, side = np.split(np.array(found.uniforms["shadow_window"]), 2)
-        return np.asarray(low / side % 1)
-
-    assert np.abs(corner(100.0, True) - corner(100.37, True)).max() < 1e-6
-    assert np.abs(corner(100.0, False) - corner(100.37, False)).max() > 0.01
+    stands_still_when_snapped(DepthShadowMap)
 
 
 def test_distance_to_the_reference(judge: Judge) -> None:
-    judge.holds(
-        "shadow",
-        KIND,
-        MARCH,
-        COST,  # light arrives wholly or not at all; bias; texels without a filter
-        against="full",
-        shadow=worlds.technique("shadow", KIND, **FIXED),
-    )
-
-
-def test_a_wrong_threshold_costs_more(judge: Judge) -> None:
-    late = {"shadow": worlds.technique("shadow", KIND, **{**FIXED, "threshold": 0.99})}
-    assert judge.distance("shadow", KIND, "full", **late) > 1.1 * (MARCH + COST)
+    holds_cost(judge, KIND, COST, FIXED)
 
 
 def test_picture(judge: Judge) -> None:

@@ -15,6 +15,7 @@ from renderer.forest.shadow.fourier_opacity_map import FourierOpacityMap
 from renderer.forest.state import ForestState
 from renderer.forest.world_scale import CANOPY_HEIGHT, VOXEL
 from tests.forest import worlds
+from tests.forest.shadow.banks import stands_still_when_snapped
 from tests.forest.shadow.opacities import by_series, by_sums, lines_through, rise, rms, series, table
 from tests.forest.truth import MARCH, ROOT, Judge
 
@@ -216,15 +217,7 @@ def test_no_sun_below_the_horizon_and_no_shadow_without_strength(ask: Ask) -> No
 
 
 def test_a_snapped_map_keeps_its_texels_while_the_camera_moves() -> None:
-    def corner(x: float, snapping: bool) -> np.ndarray:
-        made = worlds.state(camera=worlds.map_view(x, -50, 60), sun=worlds.sun(200, 40))
-        found = FourierOpacityMap(snapping=snapping).sun_pass(made, {"terrain": worlds.ground()}, (64, 64))
-        assert found is not None
-        low, side = np.split(np.array(found.uniforms["shadow_window"]), 2)
-        return np.asarray(low / side % 1)
-
-    assert np.abs(corner(100.0, True) - corner(100.37, True)).max() < 1e-6
-    assert np.abs(corner(100.0, False) - corner(100.37, False)).max() > 0.01
+    stands_still_when_snapped(FourierOpacityMap)
 
 
 def test_distance_to_the_reference(judge: Judge) -> None:
