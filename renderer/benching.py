@@ -7,11 +7,13 @@ from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from renderer.core.registry import phenomenon, techniques
 from renderer.study.horizon_bench import time_horizons
 from renderer.study.sweep import FRAMES, Case, clock, provenance
 from renderer.study.yardstick import Yardstick
-from renderer.world.camera import Look
+from renderer.world.camera import Look, Orthographic, pose
 from renderer.world.state import SceneState, View
 from renderer.world.sun import SunDirection, angles
 
@@ -42,11 +44,18 @@ class Stopwatch:
         session: draws.
         scene: its name.
         size: width and height, pixels.
+        states: what a case means; `state_of` where it is not given.
     """
 
-    def __init__(self, session: Session, scene: str, size: tuple[int, int]) -> None:
+    def __init__(
+        self,
+        session: Session,
+        scene: str,
+        size: tuple[int, int],
+        states: Callable[[Case], SceneState] | None = None,
+    ) -> None:
         self._session = session
-        self._scene = scene
+        self._states = states or (lambda case: state_of(session, scene, case))
         self._size = size
         self._view = session.view()
         self._turn = 0
@@ -56,7 +65,7 @@ class Stopwatch:
         # No two frames share a turn, whatever their case: one would be spared what the other has traced.
         self._turn += 1
         moves = str(case.parameters.get("moves", MOVES[0]))
-        state = moved(state_of(self._session, self._scene, case), moves, self._turn)
+        state = moved(self._states(case), moves, self._turn)
         if not self._session.prepared(state):
             self._session.prepare(state).future.result()
         return float(self._view.frame(state, *self._size).result().render_ms)
@@ -86,6 +95,8 @@ def moved(state: SceneState, what: str, turn: int) -> SceneState:
     part: Any = state.camera
     if what == "camera" and isinstance(part, Look):
         return state.model_copy(update={what: _looking_aside(part, turn)})
+    if what == "camera" and isinstance(part, Orthographic):
+        return state.model_copy(update={what: _moved_aside(part, turn)})
     if what == "sun":
         azimuth, elevation = angles(state.sun)
         part = SunDirection(azimuth=math.degrees(azimuth), elevation=math.degrees(elevation))
@@ -100,6 +111,12 @@ def _looking_aside(camera: Look, turn: int) -> Look:
     turned = (x * math.cos(angle) + y * math.sin(angle), y * math.cos(angle) - x * math.sin(angle), z)
     target = tuple(start + way for start, way in zip(camera.eye, turned, strict=True))
     return camera.model_copy(update={"target": target})
+
+
+def _moved_aside(camera: Orthographic, turn: int) -> Orthographic:
+    """The parallel view moved to its right by as large a share of its width as a step is of a whole turn."""
+    moved = np.add(camera.centre, turn * STEP_DEGREES / 360 * camera.width * pose(camera).right)
+    return camera.model_copy(update={"centre": tuple(map(float, moved))})
 
 
 def variants(scene: str) -> list[dict[str, str]]:
@@ -135,10 +152,10 @@ def time_frames(
         results: JSON lines to add to.
         machine: where it runs.
         frames: timed frames of each, as far as stated.
-        presets: all where none is named.
+        presets: all where none is named, but for those made for one purpose.
         progress: told the share done.
     """
-    names = presets or tuple(phenomenon(scene).presets)
+    names = presets or tuple(name for name, preset in phenomenon(scene).presets.items() if not preset.group)
     stick = session.gl.call(Yardstick)
     groups = list(_groups(scene, names))
     found = []

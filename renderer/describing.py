@@ -11,7 +11,10 @@ from renderer.core.technique import Phenomenon, Technique
 
 def listed(found: Phenomenon) -> dict[str, Any]:
     """Name, title, help, presets and combinations of a scene."""
-    presets = [{"name": name, "title": preset.title, "help": preset.help} for name, preset in found.presets.items()]
+    presets = [
+        {"name": name, "title": preset.title, "help": preset.help, "group": preset.group}
+        for name, preset in found.presets.items()
+    ]
     combinations = [
         {"name": name, "title": entry.title, "help": entry.help} for name, entry in found.combinations.items()
     ]
@@ -33,7 +36,7 @@ def described(found: Phenomenon, documents: Mapping[str, dict[str, Any]], versio
         version: of the OpenGL at hand.
     """
     presets = {
-        name: {"title": preset.title, "help": preset.help, "document": documents[name]}
+        name: {"title": preset.title, "help": preset.help, "group": preset.group, "document": documents[name]}
         for name, preset in found.presets.items()
     }
     return {

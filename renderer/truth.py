@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import functools
 import hashlib
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
@@ -60,18 +60,21 @@ class Truth:
     seconds: float
 
 
-def truth_bake(state: SceneState, width: int, height: int, judge: Judge = "combination") -> Bake:
+def truth_bake(
+    state: SceneState, width: int, height: int, judge: Judge = "combination", cast: Sequence[str] | None = None
+) -> Bake:
     """The computation of a state's reference.
 
     Args:
         state: any state of a scene that has a reference.
         width, height: pixels.
         judge: what it is for.
+        cast: kinds of shadow that fall, by the reference's own names; all that the judge has where none are given.
     """
     found = phenomenon(state.scene)
     slots = {slot.name for slot in found.slots}
     document = state.model_dump(mode="json", exclude={*NOT_THE_WORLD, *slots})
-    options = OPTIONS[state.scene](state, judge)
+    options = OPTIONS[state.scene](state, judge, cast)
     inputs = tuple(bake for bake in found.bakes(state) if bake.name in found.world_needs)
     arguments = {
         "state": document,
@@ -129,14 +132,19 @@ def truth_of(arrays: Arrays) -> Truth:
     )
 
 
-def _forest_options(state: Any, judge: Judge) -> dict[str, Any]:
+FOREST_SHADOWS = ("terrain", "forest_on_ground", "tree_on_tree", "within_tree")
+"""Kinds of shadow that the forest's reference can leave out."""
+
+
+def _forest_options(state: Any, judge: Judge, cast: Sequence[str] | None) -> dict[str, Any]:
     """A shadow is judged under the picture's own light where the reference has it; everything else by the leaves."""
     own = judge == "shadow" and state.light.kind in ("lambert", "gouraud")
-    bare = {"terrain": False, "forest_on_ground": False, "tree_on_tree": False, "within_tree": False}
     # what is judged for its shadow or its matter has the sky's light of its own, where the reference has that
     shared = judge == "share" or (judge != "combination" and state.sky.kind == "ambient")
     sky = {} if shared else {"sky": "hemisphere"}
-    return {"light": state.light.kind if own else "leaf", **sky, **(bare if judge == "matter" else {})}
+    falling = FOREST_SHADOWS if cast is None and judge != "matter" else tuple(cast or ())
+    left_out = {kind: False for kind in FOREST_SHADOWS if kind not in falling}
+    return {"light": state.light.kind if own else "leaf", **sky, **left_out}
 
 
 def _forest(
@@ -175,7 +183,7 @@ def _forest(
     }
 
 
-OPTIONS: dict[str, Callable[[Any, Judge], dict[str, Any]]] = {"forest": _forest_options}
+OPTIONS: dict[str, Callable[[Any, Judge, Sequence[str] | None], dict[str, Any]]] = {"forest": _forest_options}
 """Options of each phenomenon's reference."""
 
 RENDER: dict[str, Callable[..., Arrays]] = {"forest": _forest}

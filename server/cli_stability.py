@@ -11,7 +11,7 @@ from typing import Any
 from renderer.choices import choices_of, plain
 from renderer.core.errors import InputError
 from renderer.session import Session
-from server.cli_study import DOCS, Teller, keep, names_of
+from server.cli_study import DOCS, Teller, keep, names_of, presets_of
 from server.settings import load
 
 KEPT = ("table.md", "flicker.png", "flicker.svg")
@@ -85,7 +85,7 @@ def stability(given: argparse.Namespace) -> int:
         choices = choices_of(given.scene, given.slot, given.techniques)
         plans = [
             steadying.Plan(given.scene, preset, sweep, given.slot, choices, sets, given.width, given.steps).checked()
-            for preset in names_of("--presets", given.presets, every) or every[:1]
+            for preset in presets_of(given.presets, scene["presets"]) or every[:1]
             for sweep in given.sweep.split(",")
         ]
         folder = Path(load().study) / given.scene / "stability"

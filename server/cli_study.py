@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import shutil
 import time
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +20,9 @@ DOCS = ROOT / "docs"
 OUT = ROOT / "out" / "bench"
 KEPT = ("table.md", "speed_accuracy.svg", "speed_accuracy.png")
 """Files of a study that the documentation keeps."""
+
+KINDS = "kinds"
+"""Folder of the table of shadow kinds."""
 
 FRAMES = 30
 """Timed frames of each technique, from which medians and 95th percentiles are stated."""
@@ -39,6 +43,9 @@ def add(commands: Any) -> None:
     command.add_argument("--suns", metavar="NAME,..", default="", help="all, names, or how many (default: 8 or all)")
     command.add_argument("--slots", metavar="NAME,..", default="", help="(default: shadow, light and geometry)")
     command.add_argument("--combinations", action="store_true", help="of the named combinations of techniques instead")
+    command.add_argument("--kinds", action="store_true", help="of shadow instead: each technique in views of one kind")
+    command.add_argument("--moving", type=int, default=64, help="side of pictures whose sun moves (with --kinds), px")
+    command.add_argument("--steps", type=int, default=16, help="of the moving sun (with --kinds)")
     command.add_argument("--size", type=int, default=128, help="side of the pictures, px (default %(default)s)")
     command.add_argument("--frames", type=int, default=FRAMES, help="timed frames of each; 0 for no times")
     command.add_argument("--docs", action="store_true", help="copy tables and charts into docs/study")
@@ -76,21 +83,28 @@ class Teller:
         self.bar(Progress(self._name, self._at, words, left))
 
 
-def names_of(option: str, text: str, every: tuple[str, ...]) -> tuple[str, ...]:
-    """Names separated by commas; `all`, or how many of the first.
+def names_of(option: str, text: str, every: tuple[str, ...], common: tuple[str, ...] = ()) -> tuple[str, ...]:
+    """Names separated by commas, of `every`; `all`, or how many of the first, of `common` where that is given.
 
     Raises:
         InputError: a number that is none, or a name that there is not.
     """
+    most = common or every
     if text == "all":
-        return every
-    if text.isdigit() and 1 <= int(text) <= len(every):
-        return every[: int(text)]
+        return most
+    if text.isdigit() and 1 <= int(text) <= len(most):
+        return most[: int(text)]
     names = tuple(filter(None, text.split(",")))
     for name in names:
         if name not in every:
-            raise InputError(option, f"{name} is not known", f"all, 1 to {len(every)}, or of {', '.join(every)}")
+            raise InputError(option, f"{name} is not known", f"all, 1 to {len(most)}, or of {', '.join(every)}")
     return names
+
+
+def presets_of(text: str, presets: Mapping[str, Mapping[str, Any]]) -> tuple[str, ...]:
+    """Presets by name; all of them are those that were not made for one purpose."""
+    common = tuple(name for name, preset in presets.items() if not preset["group"])
+    return names_of("--presets", text, tuple(presets), common)
 
 
 def study(given: argparse.Namespace) -> int:
@@ -99,13 +113,15 @@ def study(given: argparse.Namespace) -> int:
 
     if given.frames < 0:
         raise InputError("--frames", "cannot be negative", f"0 for no times, {FRAMES} for stated ones")
+    if given.kinds:
+        return kinds(given)
     with Session() as session:
         scene = session.describe(given.scene)
         slots = COMBINATION if given.combinations else given.slots
         suns = "all" if given.combinations else str(study_plan.SOME_SUNS)
         plan = study_plan.Plan(
             given.scene,
-            names_of("--presets", given.presets, tuple(scene["presets"])),
+            presets_of(given.presets, scene["presets"]),
             names_of("--suns", given.suns or suns, tuple(study_plan.SUNS)),
             names_of("--slots", slots, study_plan.Plan.slots_of(given.scene)) or study_plan.SLOTS,
             given.size,
@@ -121,6 +137,26 @@ def study(given: argparse.Namespace) -> int:
             keep(folder / part, DOCS / "study" / given.scene / part, KEPT)
     homes = ", ".join(str(folder / part) for part in plan.judged.values())
     print(f"{homes}: results.jsonl, table.md, speed_accuracy.svg .png .csv")
+    return 0
+
+
+def kinds(given: argparse.Namespace) -> int:
+    """Run the table of shadow kinds and write its raw results, table and chart."""
+    from renderer import kind_costs, kind_study
+
+    if given.combinations or given.presets or given.suns or given.slots:
+        raise InputError("--kinds", "has its own views, suns and techniques", "alone, with --size, --moving, --steps")
+    plan = kind_study.Plan(given.scene, given.size, given.moving, given.steps).checked()
+    folder = Path(load().study) / given.scene / KINDS
+    tell = Teller(given.scene)
+    try:
+        with Session() as session:
+            kind_costs.run(session, plan, folder, given.frames, tell)
+    finally:
+        tell.bar.close()
+    if given.docs:
+        keep(folder, DOCS / "study" / given.scene / KINDS, (*KEPT, kind_costs.RAW))
+    print(f"{folder}: results.jsonl, raw.jsonl, table.md, speed_accuracy.svg .png .csv")
     return 0
 
 
@@ -141,7 +177,7 @@ def bench(given: argparse.Namespace) -> int:
         raise InputError("--frames", "must be at least one", f"{FRAMES} for stated medians and percentiles")
     found: dict[str, Any] = {}
     with Session() as session:
-        presets = names_of("--presets", given.presets, tuple(session.describe(given.scene)["presets"]))
+        presets = presets_of(given.presets, session.describe(given.scene)["presets"])
         machine = benching.provenance(session.gl.info.renderer)
         tell = Teller(given.scene)
         try:

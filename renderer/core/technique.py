@@ -145,8 +145,14 @@ class Phenomenon:
 
 @dataclass(frozen=True)
 class Preset:
-    """A named patch of the default document."""
+    """A named patch of the default document.
+
+    Attributes:
+        title, help: for people. patch: what differs.
+        group: of presets made for one purpose, in words; whatever takes all presets leaves them out. Else empty.
+    """
 
     title: str
     help: str
     patch: dict[str, Any] = field(default_factory=dict)
+    group: str = ""

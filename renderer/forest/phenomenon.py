@@ -8,6 +8,7 @@ from typing import Any
 from renderer.core.technique import Arrays, Phenomenon, Preset, Slot
 from renderer.forest.bakes import bakes
 from renderer.forest.combinations import COMBINATIONS
+from renderer.forest.isolating import VIEWS
 from renderer.forest.probe import probe
 from renderer.forest.renderer import ForestRenderer
 from renderer.forest.state import DEFAULTS, ForestState
@@ -104,6 +105,7 @@ PRESETS = {
             "view": {"exposure": 0.9},
         },
     ),
+    **VIEWS,
 }
 
 PHENOMENON = Phenomenon(

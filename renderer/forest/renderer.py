@@ -11,6 +11,7 @@ import numpy as np
 from renderer.core.params import uniforms
 from renderer.core.technique import BakedArrays
 from renderer.forest.program import SCOUT_BLOCKS, TRACE_SLOTS, pass_source, scout_source, shade_source, trace_source
+from renderer.forest.technique import ForestTechnique
 from renderer.forest.textures import (
     bilinear_cells,
     ground_textures,
@@ -32,7 +33,7 @@ from renderer.world.sun import angles, direction
 
 if TYPE_CHECKING:
     from renderer.forest.state import ForestState
-    from renderer.forest.technique import ForestTechnique, SunPass
+    from renderer.forest.technique import SunPass
 
 Baked = Mapping[str, BakedArrays]
 Prepared = tuple[Source, dict[str, AnyTexture], dict[str, Any]]
@@ -158,6 +159,8 @@ class ForestRenderer:
         self, slot: str, technique: ForestTechnique, state: ForestState, baked: Baked
     ) -> Mapping[str, AnyTexture]:
         """The textures of a technique that last as long as what was baked."""
+        if type(technique).kept_textures is ForestTechnique.kept_textures:
+            return {}  # an entry without textures would push out another's, which takes long to send again
         arrays = {name: entry.arrays for name, entry in baked.items()}
         keys = tuple(sorted(entry.key for entry in baked.values()))
         key = (slot, technique.kind, keys)  # type: ignore[attr-defined]

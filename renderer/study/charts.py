@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
@@ -17,8 +18,10 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 from renderer.core.errors import InputError
 from renderer.study.sweep import read
 
-COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000", "#8c6d31")
-"""Distinct for colour-blind eyes (Okabe and Ito 2008), their yellow replaced by a brown that shows on white."""
+COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000", "#8c6d31", "#999999", "#882255",
+           "#332288", "#a3b800")
+"""Distinct for colour-blind eyes (Okabe and Ito 2008), their yellow replaced by a brown that shows on white; the last
+four after Tol 2021."""
 
 MARKERS = ("o", "s", "^", "D", "v", "P", "X", "*")
 
@@ -199,14 +202,19 @@ def speed_accuracy(
         axes.plot(
             *reference, "*", color="black", markersize=12, linestyle="none", label="reference: its cost, its own error"
         )
+    plain_axes(axes)
+    axes.legend(fontsize="small", loc="center left", bbox_to_anchor=(1.0, 0.5))
+    return figure
+
+
+def plain_axes(axes: Axes) -> None:
+    """A grid, and plain numbers along two logarithmic axes."""
     for axis in (axes.xaxis, axes.yaxis):
         # plain numbers at 1, 2, 5, 10: matplotlib's own crowd each other where an axis spans less than two decades
         axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
         axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
         axis.set_minor_formatter(NullFormatter())
     axes.grid(True, which="both", alpha=0.2)
-    axes.legend(fontsize="small", loc="center left", bbox_to_anchor=(1.0, 0.5))
-    return figure
 
 
 def _styles(points: Sequence[Point], slot: str, palette: Sequence[str]) -> dict[str, str]:
