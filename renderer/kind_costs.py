@@ -146,7 +146,7 @@ def run(session: Session, plan: Plan, folder: Path, frames: int, tell: Tell | No
         "Each cell: relative RMSE / mean FLIP / flicker, over the pixels that the kind's shadow, cast alone, changes "
         f"by more than {THRESHOLD:.0%} of the unshadowed picture's mean; `{TIMED}` over all of `{view.preset}`. Shadow "
         "techniques stand on exact leaf light and rays too fine to err, and are judged against exact shadows; "
-        "combinations have their own light, and are judged against the full reference. Frames are of "
+        "combinations have their own light, and are judged against leaves' own. Frames are of "
         f"{TIMED_SIZE[0]} x {TIMED_SIZE[1]} pixels."
     )
     write(lines, folder, title, notes)

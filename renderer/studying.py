@@ -88,8 +88,8 @@ class Study:
         return key_of(code, bakes, self._bake(case, self.plan.judge), state.model_dump(mode="json"), PASSES)
 
     def _differs(self, case: Case) -> bool:
-        """Whether the picture's own light is another than the reference's."""
-        return self._bake(case, "shadow") != self._bake(case, "combination")
+        """Whether the picture's own light is another than the reference's, whichever sky both have."""
+        return self._bake(case, "shadow") not in (self._bake(case, "share"), self._bake(case, "combination"))
 
     def _bake(self, case: Case, judge: Judge) -> str:
         return bake_key(truth_bake(self._state(case), self.plan.size, self.plan.size, judge))

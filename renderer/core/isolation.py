@@ -31,7 +31,7 @@ class Contender:
     Attributes:
         label: of the row.
         patch: documents of the slots in which it differs from the table's common ones.
-        combination: whether it answers for its light too, and is judged against the full reference.
+        combination: whether it fills every slot as it means to, and answers for its light too.
     """
 
     label: str

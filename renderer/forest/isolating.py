@@ -83,8 +83,8 @@ COMMON: Mapping[str, Any] = {
     "sky": {"kind": "ambient"},
     **FINE,
 }
-"""What all shadow techniques are judged with: leaves and the sky's share as the reference has them, rays too fine to err
-themselves, and no empirical shading, which darkens even exact shadows."""
+"""What all shadow techniques are judged with: leaves and the sky's share as the reference has them, rays too fine to
+err themselves, and no empirical shading, which darkens even exact shadows."""
 
 SWEPT: Mapping[str, tuple[str, tuple[int, ...]]] = {
     "horizon_map": ("sectors", (4, 8, 16, 32)),

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 
 from renderer import view
-from renderer.forest.renderer import bounds, tallest
+from renderer.forest.renderer import ForestRenderer, bounds, tallest
 from renderer.forest.world_scale import CELL, NODES
 from renderer.gl.thread import GLThread
 from renderer.world.camera import rays
@@ -136,6 +137,15 @@ def test_taller_trees_are_not_drawn_with_the_last_ones_bounds(thread: GLThread, 
     paint(made, low, (32, 32), 1)
     clean = view.paint(thread, view.Painter(thread), made, high, (32, 32), 1).linear
     np.testing.assert_array_equal(paint(made, high, (32, 32), 1).linear, clean)
+
+
+@pytest.mark.parametrize(("kind", "kept"), [("none", False), ("depth_shadow_map", False), ("sun_march", True)])
+def test_only_textures_that_last_take_a_place_among_them(kind: str, kept: bool) -> None:
+    asked: list[Any] = []
+    store = SimpleNamespace(get=lambda key, make: asked.append(key) or {})
+    state = worlds.state(shadow={"kind": kind})
+    ForestRenderer._kept(SimpleNamespace(_baked=store, _gl=None), "shadow", state.shadow, state, {})  # type: ignore[arg-type]
+    assert bool(asked) is kept
 
 
 def test_bounds_are_those_of_a_plane_and_a_kink() -> None:
