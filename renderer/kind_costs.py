@@ -40,7 +40,7 @@ NAME = "contender"
 def measure_times(
     session: Session, plan: Plan, results: Path, machine: Mapping[str, Any], frames: int, tell: Tell | None = None
 ) -> list[dict[str, Any]]:
-    """One interactive frame of every contender, in turns in one run: the sun moving, then the camera moving.
+    """One interactive frame of every contender, in turns in one run, while the sun moves.
 
     Args:
         session: draws. plan: checked.
@@ -54,14 +54,11 @@ def measure_times(
     stick = session.gl.call(Yardstick)
     watch = Stopwatch(session, plan.scene, TIMED_SIZE, lambda case: states[case.techniques[NAME]])
     yardstick = functools.partial(session.gl.call, stick.draw_ms)
-    found = []
+    cases = [Case(preset, "preset", {NAME: label}, {"moves": MOVES[1]}) for label in states]
     try:
-        for moves in MOVES[1:]:
-            cases = [Case(preset, "preset", {NAME: label}, {"moves": moves}) for label in states]
-            found += clock(results, cases, watch.frame_ms, TIMED_SIZE, machine, yardstick, frames, tell)
+        return clock(results, cases, watch.frame_ms, TIMED_SIZE, machine, yardstick, frames, tell)
     finally:
         watch.close()
-    return found
 
 
 def _timed(session: Session, state: SceneState) -> SceneState:
@@ -147,7 +144,7 @@ def run(session: Session, plan: Plan, folder: Path, frames: int, tell: Tell | No
         f"by more than {THRESHOLD:.0%} of the unshadowed picture's mean; `{TIMED}` over all of `{view.preset}`. Shadow "
         "techniques stand on exact leaf light and rays too fine to err, and are judged against exact shadows; "
         "combinations have their own light, and are judged against leaves' own. Frames are of "
-        f"{TIMED_SIZE[0]} x {TIMED_SIZE[1]} pixels."
+        f"{TIMED_SIZE[0]} x {TIMED_SIZE[1]} pixels, the sun moving."
     )
     write(lines, folder, title, notes)
     text = "".join(json.dumps(line, sort_keys=True) + "\n" for line in lines)

@@ -91,7 +91,6 @@ SWEPT: Mapping[str, tuple[str, tuple[int, ...]]] = {
     "double_horizon_map": ("sectors", (4, 8, 16, 32)),
     "horizon_volume": ("sectors", (4, 8, 16, 32)),
     "depth_shadow_map": ("resolution", (512, 2048)),
-    "cascaded_shadow_map": ("resolution", (512, 2048)),
     "perspective_shadow_map": ("resolution", (512, 2048)),
 }
 """Techniques that have a row for each of several settings; all others have one, at their defaults."""

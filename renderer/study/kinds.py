@@ -26,7 +26,6 @@ MEASURES = ("relative_rmse", "flip_mean", "flicker")
 COSTS = (
     ("frame_ms", "frame, ms"),
     ("yardsticks", "yardsticks"),
-    ("moved", "camera moving"),
     ("held_bytes", "on the GPU, MB"),
     ("baked_bytes", "baked, MB"),
     ("bake_seconds", "bake, s of a core"),
@@ -75,10 +74,7 @@ def rows(lines: Lines) -> list[Row]:
     costs: dict[str, dict[str, float]] = {label: {} for label in held}
     for line in lines:
         if line["kind"] == "time" and (label := line["techniques"]["contender"]) in costs:
-            if line["parameters"]["moves"] == "sun":
-                costs[label] |= {"frame_ms": line["frame_ms"], "yardsticks": line["yardsticks"]}
-            else:
-                costs[label]["moved"] = line["yardsticks"]
+            costs[label] |= {"frame_ms": line["frame_ms"], "yardsticks": line["yardsticks"]}
         elif line["kind"] == "bytes" and line["label"] in costs:
             costs[line["label"]] |= {name: line[name] for name in ("held_bytes", "baked_bytes", "bake_seconds")}
     made = [Row(label, kinds, costs[label], combined[label]) for label, kinds in held.items()]
