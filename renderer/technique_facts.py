@@ -19,6 +19,9 @@ from renderer.studying import TIMED_SIZE, Study
 if TYPE_CHECKING:
     from renderer.session import Session
 
+QUICKEST_OF = 40
+"""Yardsticks of which the quickest stands for this machine: what else it did meanwhile is then no part of a cost."""
+
 Tell = Callable[[float, str], None]
 Lines = Sequence[Mapping[str, Any]]
 
@@ -63,15 +66,17 @@ def measure(session: Session, scene: str, folder: Path, size: int, frames: int, 
     finally:
         watch.close()
     path = folder / "facts.json"
-    path.write_text(json.dumps(facts(scene, errors, times, size), indent=1), encoding="utf-8")
+    unit = min(session.gl.call(stick.draw_ms) for _ in range(QUICKEST_OF))
+    path.write_text(json.dumps(facts(scene, errors, times, size, unit), indent=1), encoding="utf-8")
     return path
 
 
-def facts(scene: str, errors: Lines, times: Lines, size: int) -> dict[str, Any]:
+def facts(scene: str, errors: Lines, times: Lines, size: int, unit: float) -> dict[str, Any]:
     """The numbers by slot and kind.
 
     Args:
-        errors, times: lines of a sweep and of a clock, over `variants`. size: of the pictures, pixels.
+        errors, times: lines of a sweep and of a clock, over `variants`.
+        size: of the pictures, pixels. unit: a yardstick [ms].
 
     Returns:
         `slots`: by slot and kind, `error` and `worst` (median and largest relative RMSE over the presets), and by what
@@ -91,13 +96,13 @@ def facts(scene: str, errors: Lines, times: Lines, size: int) -> dict[str, Any]:
             numbers = {"error": float(np.median(wrong)), "worst": float(max(wrong))} if wrong else {}
             for line in of(times, slot.name, kind):
                 moves = line["parameters"]["moves"]
-                numbers |= {moves: line["yardsticks"], f"{moves}_ms": line["frame_ms"]}
+                numbers |= {moves: line["yardsticks"], f"{moves}_ms": line["yardsticks"] * unit}
             found.setdefault(slot.name, {})[kind] = numbers
     machine = errors[0]["machine"]
     note = (
         "Measured with everything else at its default. Error: relative RMSE against the reference, median and worst of "
         f"{len({line['preset'] for line in errors})} presets, {size} px. Cost: one frame of {TIMED_SIZE[0]} x "
-        f"{TIMED_SIZE[1]} while the sun or the camera moves, on {machine['renderer']}, {machine['cores']} cores; a "
-        f"yardstick is a shader's 64 texture samples a pixel there."
+        f"{TIMED_SIZE[1]} while the sun or the camera moves, on {machine['renderer']}, {machine['cores']} cores, in "
+        f"yardsticks: a shader of 64 texture samples a pixel, {unit:.0f} ms there."
     )
     return {"slots": found, "note": note, "machine": machine}

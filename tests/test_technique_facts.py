@@ -30,17 +30,18 @@ def test_each_technique_has_its_own_numbers_and_the_default_those_of_all() -> No
 
     def cost(chosen: Any, preset: str) -> dict[str, Any]:
         twice = 2 if chosen["shadow"] == "none" else 1
-        return {"parameters": {"moves": "sun"}, "frame_ms": 20.0 * twice, "yardsticks": 0.5 * twice}
+        return {"parameters": {"moves": "sun"}, "frame_ms": 90.0 * twice, "yardsticks": 0.5 * twice}
 
-    found = facts("forest", lines(error), lines(cost)[: len(variants("forest"))], 48)
+    found = facts("forest", lines(error), lines(cost)[: len(variants("forest"))], 48, 40.0)
     none, default = (found["slots"]["shadow"][kind] for kind in ("none", "double_horizon_map"))
     assert none == pytest.approx({"error": 0.4, "worst": 0.6, "sun": 1.0, "sun_ms": 40.0})
     assert default == pytest.approx({"error": 0.2, "worst": 0.3, "sun": 0.5, "sun_ms": 20.0})
     assert found["slots"]["light"]["leaf"] == default
     assert found["slots"]["light"]["gouraud"]["error"] == pytest.approx(0.2), "of the pictures that were drawn"
     assert "3 presets, 48 px" in found["note"]
+    assert "40 ms" in found["note"]
 
 
 def test_what_was_not_measured_is_left_out() -> None:
-    found = facts("forest", lines(lambda chosen, preset: {"relative_rmse": 0.1}), [], 48)
+    found = facts("forest", lines(lambda chosen, preset: {"relative_rmse": 0.1}), [], 48, 40.0)
     assert found["slots"]["sky"]["constant"] == {"error": pytest.approx(0.1), "worst": pytest.approx(0.1)}

@@ -180,8 +180,8 @@ def test_a_comparison_has_files_and_numbers(gain: float, error: float) -> None:
     session: Any = Drawing(of, gain, baked())
     told: list[Any] = []
     found = comparing.compare(session, of, 12, 8, told.append)
-    # the meadow is of one colour, whose channels differ: the error relative to the mean is their quadratic mean
-    colour = session.arrays["linear"][0, 0, :3]
+    # the meadow's channels differ: the error relative to the mean is their quadratic mean
+    colour = session.arrays["linear"][..., :3]
     expected = error * float(np.sqrt(np.mean(colour**2)) / colour.mean())
     assert found.numbers["relative_rmse"] == pytest.approx(expected, abs=1e-6)
     assert found.numbers["relative_rmse_after_gain"] == pytest.approx(0, abs=1e-6)

@@ -14,6 +14,9 @@ EMPIRICAL: dict[str, Any] = {"kind": "empirical", "strength": 1.0, "foot": 0.5, 
 
 NO_HEIGHT: dict[str, Any] = {"kind": "none"}
 
+SEEN: dict[str, Any] = {"kind": "visible_hemisphere"}
+"""Its sky light errs by 0.13 to 0.21, that by the pattern's own share by 0.23 to 0.40; it costs 0.1 yardstick more."""
+
 FINE: dict[str, Any] = {
     "geometry": {"kind": "ray_march", "step": 1.0, "stop": 0.02},
     "filter": {"kind": "none"},
@@ -51,16 +54,22 @@ COMBINATIONS = {
     "soft_horizons": Preset(
         "Soft horizons",
         "Horizons that let light through, at many heights and azimuths, on thin leaves.",
-        {"shadow": {"kind": "horizon_volume"}, "height_shading": NO_HEIGHT, "light": {"kind": "leaf"}},
+        {"shadow": {"kind": "horizon_volume"}, "height_shading": NO_HEIGHT, "light": {"kind": "leaf"}, "sky": SEEN},
     ),
     "traced": Preset(
         "Traced shadows",
         "The sun's ray is followed through the trees themselves, on thin leaves.",
-        {"shadow": {"kind": "sun_march"}, "height_shading": NO_HEIGHT, "light": {"kind": "leaf"}},
+        {"shadow": {"kind": "sun_march"}, "height_shading": NO_HEIGHT, "light": {"kind": "leaf"}, "sky": SEEN},
     ),
     "traced_fine": Preset(
         "Traced shadows, fine",
         "The same, with finer steps of the eye's ray at the finest level: nearest to the reference.",
-        {"shadow": {"kind": "sun_march"}, "height_shading": NO_HEIGHT, "light": {"kind": "leaf"}, **FINE},
+        {
+            "shadow": {"kind": "sun_march"},
+            "height_shading": NO_HEIGHT,
+            "light": {"kind": "leaf"},
+            "sky": SEEN,
+            **FINE,
+        },
     ),
 }

@@ -1,14 +1,18 @@
-"""How high the land's own shadow stands over every node for one sun: what hides the sun from treetops."""
+"""How high the shadow of land and stands reaches over every node for one sun."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 from numba import njit
+from scipy.ndimage import maximum_filter
 
-from renderer.core.technique import Arrays
-from renderer.forest.world_scale import CELL
+from renderer.core.technique import Arrays, Bake
+from renderer.forest.pattern import tallest
+from renderer.forest.world_scale import CELL, NODES, PRESENCE_CELL
 
 NIGHT = 1e6
 """Height [m] of the shadow when the sun is not up."""
@@ -16,17 +20,26 @@ NIGHT = 1e6
 FLOOR = 30.0
 """Depth [m] under the ground below which no ray is followed."""
 
+LOWEST, MEAN, HIGHEST = -1, 0, 1
+"""What a node takes of the two lines beside it: the lower one, a mean weighted by nearness, or the higher one."""
+
+LINES = 4
+"""Lines a cell where the shadow itself is wanted, not bounds of it: where a ridge ends, it jumps from line to line."""
+
+FOOT_REACH = 8.0
+"""Longest way [m] along either axis from a tree's foot to what it owns."""
+
 
 @njit(cache=True, nogil=True)
-def _sweep(heights, cell, azimuth, tangent, result):
+def _sweep(heights, cell, azimuth, tangent, density, choice, result):
     """Height of the shadow's upper side, walking away from the sun along lines of its azimuth.
 
-    Lines run along the azimuth, one for each row or column they start from, and carry the highest ray so far down with
-    them; a node between two lines takes the mean of both, weighted by nearness. Nothing is interpolated twice.
+    Lines run along the azimuth, some for each row or column they start from, and carry the highest ray so far down with
+    them; a node takes what the two lines beside it have. Nothing is interpolated twice.
 
     Args:
         heights: (N, M) [m], row 0 the northern edge. cell: side of a cell [m]. azimuth: of the sun [rad].
-        tangent: of its elevation. result: (N, M) float32.
+        tangent: of its elevation. density: lines a cell. choice: LOWEST, MEAN or HIGHEST. result: (N, M) float32.
 
     Source: Dozier, Bruno & Downey 1981 (lines along the azimuth); one elevation needs no hull, only the highest ray.
     """
@@ -39,34 +52,43 @@ def _sweep(heights, cell, azimuth, tangent, result):
     drift = -minor / abs(major)
     fall = cell / abs(major) * tangent
     extent = math.ceil(abs(drift) * (length - 1)) + 1
-    high = np.full(width + 2 * extent, -1e9)
-    out[:] = np.float32(0.0)
+    high = np.full((width + 2 * extent) * density, -1e9)
     for walked in range(length):
         row = length - 1 - walked if major > 0 else walked
-        moved = drift * walked
-        whole = math.floor(moved)
-        share = moved - whole
-        for line in range(high.shape[0]):
-            low = line - extent + whole
-            if low < -1 or low >= width:
-                high[line] -= fall
-                continue
-            here = (1 - share) * grid[row, max(low, 0)] + share * grid[row, min(low + 1, width - 1)]
+        start = (extent - drift * walked) * density  # the line, broken, that passes node 0 of this row
+        before = -1e9
+        first, last = max(math.floor(start), 0), min(math.ceil(start + (width - 1) * density), len(high) - 1)
+        for line in range(first, last + 1):
+            place = min(max((line - start) / density, 0.0), width - 1.0)
+            low = min(int(place), width - 2)
+            here = grid[row, low] + (place - low) * (grid[row, low + 1] - grid[row, low])
             # Without the node itself, for this falls evenly to where it meets the ground between two nodes.
             passing = max(high[line] - fall, here - FLOOR)
             high[line] = max(passing, here)
-            if low >= 0:
-                out[row, low] += np.float32((1 - share) * passing)
-            if low + 1 < width:
-                out[row, low + 1] += np.float32(share * passing)
+            if line > first:
+                _give(out[row], before, passing, line - 1, start, density, choice)
+            before = passing
 
 
-def shadow_height(heights: np.ndarray, cell: float, azimuth: float, elevation: float) -> np.ndarray:
+@njit(cache=True, nogil=True, inline="always")
+def _give(out, before, passing, line, start, density, choice):
+    """The nodes of a row between a line and the next one take what both have."""
+    node = math.ceil((line - start) / density - 1e-9)
+    while node < len(out) and node * density + start <= line + 1:
+        if node >= 0:
+            share = node * density + start - line
+            mean = before + share * (passing - before)
+            out[node] = mean if choice == MEAN else max(before, passing) if choice == HIGHEST else min(before, passing)
+        node += 1
+
+
+def shadow_height(heights: np.ndarray, cell: float, azimuth: float, elevation: float, choice: int = MEAN) -> np.ndarray:
     """Height [m] below which the sun is hidden, at every node, by others than itself.
 
     Args:
         heights: (N, M) [m], row 0 the northern edge. cell: side of a cell [m].
         azimuth, elevation: of the sun [rad], clockwise from north, from the horizontal.
+        choice: MEAN for the height itself; LOWEST or HIGHEST for a bound of it, which costs less.
 
     Returns:
         float32 (N, M); `NIGHT` everywhere when the sun is not up. Beyond the edge nothing casts a shadow.
@@ -74,7 +96,9 @@ def shadow_height(heights: np.ndarray, cell: float, azimuth: float, elevation: f
     if elevation <= 0:
         return np.full(heights.shape, NIGHT, np.float32)
     result = np.empty(heights.shape, np.float32)
-    _sweep(np.asarray(heights, np.float64), cell, azimuth, math.tan(min(elevation, 1.57)), result)
+    density = LINES if choice == MEAN else 1
+    tangent = math.tan(min(elevation, 1.57))
+    _sweep(np.asarray(heights, np.float64), cell, azimuth, tangent, density, choice, result)
     return result
 
 
@@ -82,3 +106,37 @@ def land_shadow(terrain: Arrays, sun: tuple[float, float]) -> np.ndarray:
     """Height [m] of the shadow of land and stands for a sun (azimuth, elevation), row 0 at the south as textures have
     it."""
     return np.ascontiguousarray(shadow_height(terrain["surface"], CELL, *sun)[::-1])
+
+
+def stand_tops_bake(terrain: Bake, pattern: Bake) -> Bake:
+    """What no tree stands above."""
+    return Bake("stand_tops", bake_stand_tops, {}, (terrain, pattern), seconds=0.1)
+
+
+def bake_stand_tops(
+    arguments: dict[str, Any], inputs: dict[str, Arrays], progress: Callable[[float, str], None]
+) -> Arrays:
+    """Height that nothing which stands passes, at every node.
+
+    Args:
+        inputs: `terrain` and `pattern`.
+
+    Returns:
+        `tops` float32 (N, N) [m]: the land itself where no tree stands near enough to lean in.
+    """
+    progress(0.1, "measuring the stands")
+    terrain = inputs["terrain"]
+    places = len(terrain["presence"]) // NODES
+    # A node's cells reach one cell beyond it, a tree beyond its foot.
+    near = 2 * math.ceil((FOOT_REACH + CELL) / PRESENCE_CELL) + 3
+    stands = maximum_filter(terrain["presence"], near, mode="nearest")[places // 2 :: places, places // 2 :: places]
+    height = tallest(inputs["pattern"]["colour"]) * maximum_filter(terrain["growth"], 3, mode="nearest")
+    return {"tops": (terrain["elevation"] + height * (stands > 0)).astype(np.float32)}
+
+
+def shadow_bounds(terrain: Arrays, tops: np.ndarray, sun: tuple[float, float]) -> np.ndarray:
+    """Heights [m] below which the land alone hides the sun, and above which nothing does: (N, N, 2), row 0 at the
+    south."""
+    sure = shadow_height(terrain["elevation"], CELL, *sun, choice=LOWEST)
+    free = shadow_height(tops, CELL, *sun, choice=HIGHEST)
+    return np.ascontiguousarray(np.stack([sure, free], axis=-1)[::-1])

@@ -180,3 +180,9 @@ def _list(standing: Sequence[Standing], meshes: Sequence[Tree], kinds: Sequence[
         for cell in tree.cells
     ]
     return np.array(rows, np.float32)
+
+
+def tallest(colour: np.ndarray) -> float:
+    """Height [m] over the ground that no matter of the pattern passes, with half a voxel for its filtering."""
+    filled = np.flatnonzero(colour[..., 3].any(axis=(1, 2)))
+    return float(min((filled[-1] + 1.5) / len(colour), 1.0)) * CANOPY_HEIGHT if len(filled) else VOXEL

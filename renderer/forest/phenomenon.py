@@ -49,7 +49,7 @@ SLOTS = (
         "sky",
         "Sky light",
         "How the sky lights the canopy.",
-        "vec3 sky_light(float ambient) // W m-2, ambient in [0, 1]",
+        "Skylight sky_light(Spot spot) // W m-2, on both sides of a leaf, and how much more on one of them",
         DEFAULTS["sky"],
     ),
     Slot(
@@ -102,6 +102,18 @@ PRESETS = {
         {
             "camera": {"kind": "look", "eye": [964, 306, 81.5], "target": [975, 420, 84], "field_of_view": 50},
             "sun": _sun(160, 38),
+            "view": {"exposure": 0.9},
+        },
+    ),
+    "overcast": Preset(
+        "Overcast",
+        "A closed sky: no sun, and what light there is comes from above.",
+        {
+            "camera": _orbit((1150, -300, 265), 650, 305, 15),
+            "sun": _sun(190, 45),
+            "air": {"weather": "overcast"},
+            "height_shading": {"kind": "none"},
+            "sky": {"kind": "visible_hemisphere"},
             "view": {"exposure": 0.9},
         },
     ),

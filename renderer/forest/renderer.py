@@ -10,6 +10,7 @@ import numpy as np
 
 from renderer.core.params import uniforms
 from renderer.core.technique import BakedArrays
+from renderer.forest.pattern import tallest
 from renderer.forest.program import SCOUT_BLOCKS, TRACE_SLOTS, pass_source, scout_source, shade_source, trace_source
 from renderer.forest.technique import ForestTechnique
 from renderer.forest.textures import (
@@ -291,9 +292,3 @@ def stretch(growth: np.ndarray) -> dict[str, float]:
     """How low the canopy's layer gets against the pattern's, and its greatest rise over run."""
     steps = [np.abs(np.diff(growth, axis=axis)).max() * CANOPY_HEIGHT / CELL for axis in (0, 1)]
     return {"canopy_least": float(growth.min()), "canopy_grade": float(np.hypot(*steps))}
-
-
-def tallest(colour: np.ndarray) -> float:
-    """Height [m] over the ground that no matter of the pattern passes, with half a voxel for its filtering."""
-    filled = np.flatnonzero(colour[..., 3].any(axis=(1, 2)))
-    return float(min((filled[-1] + 1.5) / len(colour), 1.0)) * CANOPY_HEIGHT if len(filled) else VOXEL

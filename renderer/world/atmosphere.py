@@ -9,6 +9,7 @@ from __future__ import annotations
 import functools
 import itertools
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -64,6 +65,13 @@ GLOW_LOWEST = -0.35
 class Atmosphere(Model):
     """What may be said about the air over a scene."""
 
+    weather: Literal["clear", "overcast"] = param(
+        "clear",
+        label="Weather",
+        help="A clear sky, or a closed layer of cloud that leaves no sun and a quarter of the light.",
+        cost="bake",
+        source="Moon and Spencer 1942; Kasten and Czeplak 1980",
+    )
     altitude: float = param(
         0.0, label="Altitude", help="Height of the observer above the sea.", unit="m", cost="bake", ge=0, le=9000
     )

@@ -1,4 +1,4 @@
-"""The clear sky: radiance of every direction, irradiance of sun and sky, by the sun's elevation.
+"""The sky: radiance of every direction, irradiance of sun and sky, by the sun's elevation.
 
 One bake gives three tables; `sky_for` takes from them what one sun needs: two colours of light and a small picture of
 the sky (view elevation x azimuth from the sun), which `shaders/lib/sky.glsl` reads with one fetch.
@@ -8,13 +8,12 @@ air is white, (1, 1, 1) times 1361 W m-2, and all colour comes from the air (as 
 
 Deviations: haze of one kind, a spherical Earth, no refraction, no polarisation; multiple scattering is isotropic and
 summed in closed form. Three wavelengths shown as red, green and blue make deep twilight more purple than a spectrum
-would, because ozone takes more of 600 nm than of 680 nm. It claims nothing about overcast skies; below the horizon it
-repeats the horizon's colour.
+would, because ozone takes more of 600 nm than of 680 nm. A sky is clear or wholly overcast
+(`renderer/world/overcast.py`); below the horizon it repeats the horizon's colour.
 """
 
 from __future__ import annotations
 
-import functools
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -26,6 +25,8 @@ from numpy.typing import NDArray
 from renderer.core.params import validate
 from renderer.world import atmosphere
 from renderer.world.atmosphere import GROUND, MIE_ASYMMETRY, Air, Atmosphere, Floats
+from renderer.world.overcast import overcast
+from renderer.world.sky_picture import MOMENTS, VIEW_SHAPE, irradiance_weights, moment_weights, view_directions
 from renderer.world.sun import ANGULAR_RADIUS
 
 SOLAR_CONSTANT = 1361.0
@@ -37,9 +38,6 @@ LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 NIGHT_RADIANCE = 1.7e-4 / 93.0
 """Radiance of the moonless night sky, in W m-2 sr-1: 22 magnitudes per square second of arc are 1.7e-4 cd m-2 (Leinert
 et al. 1998), at sunlight's 93 lm W-1."""
-
-VIEW_SHAPE = (64, 32)
-"""Elevations and azimuths of the sky's picture."""
 
 CELLS = (32, 64)
 """Rows and columns of the sky cut into cells of one solid angle, 5.6 degrees wide."""
@@ -79,33 +77,6 @@ def sun_elevations() -> Floats:
     steps = ((-18.0, -6.0, 1.0), (-6.0, -1.0, 0.25), (-1.0, 1.0, 0.05), (1.0, 10.0, 0.5), (10.0, 90.0, 2.5))
     parts = [np.arange(low, high - 0.5 * step, step) for low, high, step in steps]
     return np.radians(np.concatenate([*parts, [90.0]]))
-
-
-@functools.cache
-def view_directions() -> tuple[Floats, Floats]:
-    """Elevations (rows,) and azimuths from the sun (columns,) of the sky's picture, in radians."""
-    rows, columns = VIEW_SHAPE
-    return 0.5 * np.pi * np.linspace(0.0, 1.0, rows) ** 2, np.pi * np.linspace(0.0, 1.0, columns) ** 2
-
-
-@functools.cache
-def irradiance_weights() -> Floats:
-    """Weights that make a sum over the sky's picture the irradiance of a horizontal plane, (rows, columns) in sr.
-
-    They integrate the very function that bilinear interpolation of the picture draws: a sky of radiance one gives pi.
-    """
-    rows, columns = VIEW_SHAPE
-    x, w = atmosphere.legendre(12)
-    elevation, azimuth = np.zeros(rows), np.zeros(columns)
-    for weights, cells, measure in (
-        (elevation, rows - 1, lambda u: 0.5 * np.sin(np.pi * u * u) * np.pi * u),  # sin e cos e de/du, e = (pi/2) u^2
-        (azimuth, columns - 1, lambda u: 4.0 * np.pi * u),  # both halves of the sky; a = pi u^2
-    ):
-        for cell in range(cells):
-            share = w * measure((cell + x) / cells) / cells
-            weights[cell] += np.sum(share * (1.0 - x))
-            weights[cell + 1] += np.sum(share * x)
-    return elevation[:, None] * azimuth[None, :]
 
 
 def rayleigh_phase(cosine: Floats) -> Floats:
@@ -149,13 +120,12 @@ def bake_sky(
         progress(0.1 + 0.9 * row / len(elevations), "radiance of the sky")
         radiance[:, row] = SOLAR_CONSTANT * _view_row(air, r, float(elevation), suns) + NIGHT_RADIANCE
     sky = np.einsum("eyxc,yx->ec", radiance.astype(np.float64), irradiance_weights())
+    sun = SOLAR_CONSTANT * _sun_through_air(air, r, suns)
+    if settings.weather == "overcast":
+        radiance = overcast(suns, sun, sky).astype(np.float32)
+        sun, sky = 0.0 * sun, np.einsum("eyxc,yx->ec", radiance.astype(np.float64), irradiance_weights())
     progress(1.0, "sky ready")
-    return {
-        "elevations": suns,
-        "sun_irradiance": SOLAR_CONSTANT * _sun_through_air(air, r, suns),
-        "sky_irradiance": sky,
-        "radiance": radiance,
-    }
+    return {"elevations": suns, "sun_irradiance": sun, "sky_irradiance": sky, "radiance": radiance}
 
 
 def _view_row(air: Air, r: float, elevation: float, suns: Floats) -> Floats:
@@ -235,9 +205,15 @@ def metered_light(tables: Mapping[str, np.ndarray], elevation: float) -> float:
     return float(max(math.sin(elevation), 0.0) * sun + sky)
 
 
+def sky_moments(now: SkyNow) -> dict[str, Floats]:
+    """Integrals of the sky's radiance over the upper hemisphere, times powers of the direction, (3,) in W m-2 each."""
+    found = moment_weights() @ now.view.reshape(-1, 3).astype(np.float64)
+    return dict(zip(MOMENTS, found, strict=True))
+
+
 def sky_uniforms(now: SkyNow, sun_direction: Floats) -> dict[str, tuple[float, float, float]]:
     """Values of `SKY_DECLARATIONS`, its texture aside."""
-    values = {"sky_sun_direction": sun_direction, "sky_disc_radiance": now.disc_radiance}
+    values = {"sky_sun_direction": sun_direction, "sky_disc_radiance": now.disc_radiance, **sky_moments(now)}
     return {name: (float(v[0]), float(v[1]), float(v[2])) for name, v in values.items()}
 
 

@@ -1,6 +1,6 @@
-// What a point of canopy or ground sends towards the eye: E_sun V f + E_sky a g / pi, times the height factor.
-// Symbols: E_sun sun_irradiance [W/m2, normal to the beam], E_sky sky light [W/m2], V shadow_visibility, f light_reflected [1/sr] (on the
-// ground albedo / pi n.s), a ambient share, g sky_answer [-]; place.w h in the canopy, h + WOOD in wood, GROUND.
+// What a point of canopy or ground sends towards the eye: E_sun V f + S / pi, times the height factor.
+// Symbols: E_sun sun_irradiance [W/m2, normal to the beam], S what it makes of the sky's light [W/m2], V shadow_visibility, f light_reflected [1/sr] (on the
+// ground albedo / pi n.s), place.w h in the canopy, h + WOOD in wood, GROUND.
 // The slots' functions are composed in front of this file.
 
 #include "forest/patches.glsl"
@@ -19,10 +19,10 @@ vec3 outgoing(vec4 place, vec4 voxel, float level, vec3 to_eye) {
     Matter matter = Matter(leaf, passed, mean / kappa, min(kappa, 1.0), slope, vec3(uv, h), level);
     vec3 soil = ground_albedo * (1.0 + ground_patches * patches_at(place.xy));
     vec3 sun_answer = on_ground ? soil * INVERSE_PI * max(dot(slope, sun_direction), 0.0) : light_reflected(matter, to_eye);
-    vec3 even_answer = on_ground ? soil * (0.5 + 0.5 * slope.z) : sky_answer(matter, to_eye);
     float wooded = on_ground ? wooded_at(place.xy) : 1.0;
-    float ambient = mix(1.0, texel.a, wooded);
+    Skylight light = sky_light(Spot(place.xyz, matter.place, level, wooded, mix(1.0, texel.a, wooded)));
+    vec3 from_sky = on_ground ? sky_on_ground(soil, slope, light) : sky_answer(matter, to_eye, light);
     float factor = mix(1.0, height_factor(h), wooded);
     float visible = shadow_visibility(place.xyz, h, uv);
-    return (sun_irradiance * visible * sun_answer + INVERSE_PI * even_answer * sky_light(ambient)) * factor;
+    return (sun_irradiance * visible * sun_answer + INVERSE_PI * from_sky) * factor;
 }

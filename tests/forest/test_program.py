@@ -23,7 +23,7 @@ from tests.forest import worlds
 ALL = [(slot, kind) for slot in SLOTS for kind in techniques("forest", slot)]
 
 SPARED: dict[str, Callable[[dict[str, str]], bool]] = {
-    "sky_irradiance": lambda chosen: chosen["sky"] == "constant",
+    "sky_irradiance": lambda chosen: chosen["sky"] in {"constant", "visible_hemisphere"},
     "sun_elevation": lambda chosen: chosen["shadow"] == "none" or chosen["shadow"].endswith("shadow_map"),
     # Trees are as tall everywhere, unless a canopy height model says otherwise.
     "growth": lambda chosen: True,

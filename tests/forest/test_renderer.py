@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 from renderer import view
-from renderer.forest.renderer import ForestRenderer, bounds, tallest
+from renderer.forest.pattern import tallest
+from renderer.forest.renderer import ForestRenderer, bounds
 from renderer.forest.world_scale import CELL, NODES
 from renderer.gl.thread import GLThread
 from renderer.world.camera import rays

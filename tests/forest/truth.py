@@ -66,6 +66,7 @@ SCENE: dict[str, Any] = {
 REFERENCE_OPTIONS = {
     "full": Options(shadow_rays=8),
     "unshadowed": Options(terrain=False, forest_on_ground=False, tree_on_tree=False, within_tree=False),
+    "sky": Options(terrain=False, forest_on_ground=False, tree_on_tree=False, within_tree=False, sky="hemisphere"),
 }
 
 
@@ -97,7 +98,7 @@ class Judge:
         """Relative RMSE of the converged picture, over the colours.
 
         Args:
-            against: `full`, or `unshadowed` for what does not know shadows.
+            against: `full`, `unshadowed` for what does not know shadows, or `sky` likewise with the sky's light exact.
             others: what else differs from the plain techniques, by slot.
         """
         made = worlds.state(**{**SCENE, **worlds.with_technique(slot, kind), **others})

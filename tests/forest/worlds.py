@@ -19,7 +19,7 @@ from renderer.forest.safe_distance import safe_distance
 from renderer.forest.state import ForestState
 from renderer.forest.tiles import tile_table
 from renderer.forest.world_scale import CELL, NODES, VOXEL
-from renderer.world.sky import VIEW_SHAPE
+from renderer.world.sky_picture import VIEW_SHAPE
 
 E_SUN = (3.0, 2.0, 1.0)
 """Irradiance of the sun in every hand-made world, W m-2, whatever its elevation."""

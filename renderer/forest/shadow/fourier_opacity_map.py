@@ -45,8 +45,8 @@ class FourierOpacityMap(SunView):
     )
 
     kind: Literal["fourier_opacity_map"] = "fourier_opacity_map"
-    resolution: Literal[128, 256, 512, 1024, 2048] = param(
-        512, label="Resolution", help="Texels a side of the map.", unit="px", cost="host"
+    resolution: Literal[128, 256, 384, 512, 1024, 2048] = param(
+        384, label="Resolution", help="Texels a side of the map.", unit="px", cost="host"
     )
     coefficients: Literal[3, 5, 7, 9, 11, 13, 15] = param(
         15,
@@ -56,7 +56,7 @@ class FourierOpacityMap(SunView):
         source="Jansen & Bavoil 2010, section 3",
     )
     level: float = param(
-        0.0,
+        0.5,
         label="Level bias",
         help="Added to the mip level whose voxels are as wide as a texel; negative is sharper.",
         cost="host",

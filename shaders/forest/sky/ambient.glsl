@@ -2,6 +2,6 @@
 // Symbols: ambient share of the sky's hemisphere seen by the voxel [0, 1]; sky_irradiance W/m2, horizontal.
 // Deviation: the share multiplies the physical sky instead of a constant colour. It does not know which part of the sky is hidden.
 
-vec3 sky_light(float ambient) {
-    return sky_irradiance * ambient;
+Skylight sky_light(Spot spot) {
+    return even_sky(sky_irradiance * spot.ambient);
 }

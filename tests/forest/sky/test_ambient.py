@@ -14,11 +14,12 @@ from tests.forest.truth import MARCH, Judge
 
 Ask = Callable[..., np.ndarray]
 SHARES = np.linspace(0, 1, 9)
+AROUND = "sky_light(Spot(vec3(0.0), vec3(0.0), 0.0, 1.0, ambient)).around"
 
 
 def error(ask: Ask) -> float:
-    files = ["forest/sky/ambient.glsl"]
-    found = ask(files, "sky_light(ambient)", {"ambient": SHARES}, 3, techniques={"sky": Ambient()})
+    files = ["forest/matter.glsl", "forest/sky/ambient.glsl"]
+    found = ask(files, AROUND, {"ambient": SHARES}, 3, techniques={"sky": Ambient()})
     return float(np.abs(found - SHARES[:, None] * np.array(worlds.E_SKY)).max())
 
 
@@ -26,10 +27,10 @@ def test_the_share_multiplies_the_sky(ask: Ask) -> None:
     assert error(ask) < 1e-6
 
 
-@pytest.mark.parametrize("wrong", ["sky_irradiance * (1.0 - ambient)", "sky_irradiance.bgr * ambient",
-                                   "sun_irradiance * ambient", "sky_irradiance * ambient * 0.318"])
+@pytest.mark.parametrize("wrong", ["sky_irradiance * (1.0 - spot.ambient)", "sky_irradiance.bgr * spot.ambient",
+                                   "sun_irradiance * spot.ambient", "sky_irradiance * spot.ambient * 0.318"])
 def test_a_wrong_sky_is_found(ask: Ask, spoil: Callable, wrong: str) -> None:
-    with spoil("forest/sky/ambient.glsl", "sky_irradiance * ambient", wrong):
+    with spoil("forest/sky/ambient.glsl", "sky_irradiance * spot.ambient", wrong):
         assert error(ask) > 0.5
 
 

@@ -13,10 +13,12 @@ from tests.forest.truth import MARCH, Judge
 
 Ask = Callable[..., np.ndarray]
 SHARES = np.linspace(0, 1, 9)
+FILES = ["forest/matter.glsl", "forest/sky/constant.glsl"]
+AROUND = "sky_light(Spot(vec3(0.0), vec3(0.0), 0.0, 1.0, ambient)).around"
 
 
 def error(ask: Ask, made: ConstantSky) -> float:
-    found = ask(["forest/sky/constant.glsl"], "sky_light(ambient)", {"ambient": SHARES}, 3, techniques={"sky": made})
+    found = ask(FILES, AROUND, {"ambient": SHARES}, 3, techniques={"sky": made})
     exact = np.array(made.tint) * made.share * worlds.E_SUN
     return float(np.abs(found - exact).max())
 
@@ -30,7 +32,7 @@ def test_the_light_is_the_listings(ask: Ask) -> None:
 
 @pytest.mark.parametrize("wrong", ["sky_tint * sky_share * sky_irradiance", "sky_tint.bgr * sky_share * sun_irradiance",
                                    "sky_tint * (1.0 - sky_share) * sun_irradiance",
-                                   "sky_tint * sky_share * sun_irradiance * ambient"])
+                                   "sky_tint * sky_share * sun_irradiance * spot.ambient"])
 def test_a_wrong_sky_is_found(ask: Ask, spoil: Callable, wrong: str) -> None:
     with spoil("forest/sky/constant.glsl", "sky_tint * sky_share * sun_irradiance", wrong):
         assert error(ask, ConstantSky()) > 0.1
