@@ -14,7 +14,7 @@ from renderer.session import Session
 from server.cli_study import DOCS, Teller, keep, names_of, presets_of
 from server.settings import load
 
-KEPT = ("table.md", "flicker.png", "flicker.svg")
+KEPT = ("results.jsonl", "table.md", "flicker.png", "flicker.svg")
 """Files that the documentation keeps."""
 
 

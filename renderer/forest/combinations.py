@@ -15,7 +15,7 @@ EMPIRICAL: dict[str, Any] = {"kind": "empirical", "strength": 1.0, "foot": 0.5, 
 NO_HEIGHT: dict[str, Any] = {"kind": "none"}
 
 SEEN: dict[str, Any] = {"kind": "visible_hemisphere"}
-"""Its sky light errs by 0.13 to 0.21, that by the pattern's own share by 0.23 to 0.40; it costs 0.1 yardstick more."""
+"""Its sky light errs by 0.12 to 0.21, that by the pattern's own share by 0.21 to 0.40; it costs 0.1 yardstick more."""
 
 FINE: dict[str, Any] = {
     "geometry": {"kind": "ray_march", "step": 1.0, "stop": 0.02},

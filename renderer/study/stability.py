@@ -87,13 +87,15 @@ def flicker(pictures: Pictures, references: Pictures) -> Flicker:
 def table(lines: Sequence[Mapping[str, Any]]) -> str:
     """Results as Markdown, the steadiest first within each sweep."""
     heads = ["preset", "sweep", "technique", "flicker", "worst step", "one frame's flicker", "its worst step",
-             "the truth moves by", "reference's own error"]  # fmt: skip
-    rows = ["| " + " | ".join(heads) + " |", "|" + " --- |" * 3 + " ---: |" * 6]
+             "the truth moves by", "reference's own error", "pixels, steps"]  # fmt: skip
+    rows = ["| " + " | ".join(heads) + " |", "|" + " --- |" * 3 + " ---: |" * 7]
     for line in sorted(lines, key=lambda one: (one["preset"], one["sweep"], one["flicker"])):
         found = [line["flicker"], line["worst"], line["once"]["flicker"], line["once"]["worst"], line["truth"],
                  line["reference_standard_error"]]  # fmt: skip
         rows.append(
-            "| " + " | ".join([line["preset"], line["sweep"], line["label"], *(f"{v:.4f}" for v in found)]) + " |"
+            "| "
+            + " | ".join([line["preset"], line["sweep"], line["label"], *(f"{v:.4f}" for v in found)])
+            + f" | {line['size'][0]} x {line['size'][1]}, {line['steps']} |"
         )
     return "\n".join(rows) + "\n"
 

@@ -24,7 +24,6 @@ MOMENTS: dict[str, tuple[int, int, Callable[[Floats], Floats | float]]] = {
     "sky_sunward2": (0, 2, lambda azimuth: np.cos(azimuth) ** 2),
     "sky_across2": (0, 2, lambda azimuth: np.sin(azimuth) ** 2),
     "sky_upward_sunward": (1, 1, np.cos),
-    "sky_upward3": (3, 0, lambda azimuth: 1.0),
 }
 """Moments of the sky's radiance: powers of a direction's height, of its level part, and what of that lies sunward."""
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from renderer.core.errors import LimitError
 from renderer.gl.context import GL
 from renderer.gl.layers import Layers, LayerStore
 from renderer.gl.source import assemble
@@ -29,6 +30,12 @@ def fill(gl: GL, layers: Layers, shade: float) -> None:
 
 def read(texture: object, components: int, dtype: str) -> np.ndarray:
     return np.frombuffer(texture.read(), dtype).reshape(SIZE[1], SIZE[0], components)  # type: ignore[attr-defined]
+
+
+@pytest.mark.parametrize("size", [(0, 4), (100_000, 4), (4, 100_000)])
+def test_a_size_that_cannot_be_drawn_is_refused_with_its_limit(thread: GLThread, size: tuple[int, int]) -> None:
+    with pytest.raises(LimitError, match=r"1 to [0-9]+ a side"):
+        thread.call(lambda gl: Layers(gl, *size, KINDS))
 
 
 def test_both_layers_hold_what_was_drawn(thread: GLThread) -> None:

@@ -20,7 +20,8 @@ def sweep(places: int = 5) -> np.ndarray:
 
 def line(**changes: Any) -> dict[str, Any]:
     once = {"flicker": 0.3, "worst": 0.4}
-    found = {"flicker": 0.1, "worst": 0.2, "once": once, "truth": 0.05, "reference_standard_error": 0.01}
+    found = {"flicker": 0.1, "worst": 0.2, "once": once, "truth": 0.05, "reference_standard_error": 0.01,
+             "size": [128, 72], "steps": 16}  # fmt: skip
     return {"preset": "noon", "sweep": "camera", "label": "map", **found, **changes}
 
 
@@ -102,6 +103,7 @@ def test_the_steadiest_comes_first_and_everything_is_written(tmp_path: Path) -> 
     rows = table(lines).splitlines()[2:]
     assert [row.split(" | ")[2] for row in rows] == ["steady", "map", "steady"]
     assert "0.0200" in rows[0]
+    assert all(row.endswith("| 128 x 72, 16 |") for row in rows), "each tells its own size"
     write(lines, tmp_path, "a title")
     assert (tmp_path / "table.md").read_text().startswith("a title\n")
     assert (tmp_path / "flicker.png").stat().st_size > 5000

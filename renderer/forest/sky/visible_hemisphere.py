@@ -30,7 +30,6 @@ class VisibleHemisphere(ForestTechnique):
         "uniform vec3 sky_sunward2;",
         "uniform vec3 sky_across2;",
         "uniform vec3 sky_upward_sunward;",
-        "uniform vec3 sky_upward3;",
     )
 
     kind: Literal["visible_hemisphere"] = "visible_hemisphere"

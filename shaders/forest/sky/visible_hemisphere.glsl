@@ -4,7 +4,7 @@
 // Texels hold the integrals over the upper hemisphere of V / 2 pi and V w / pi: `sky_seen` through the trees, `sky_land` over the land.
 // V of the trees is taken as c + d.w with these integrals, so that the light is c and d times moments of L:
 //   sky_even L, sky_upward z L, sky_sunward s L, sky_upward2 z^2 L, sky_sunward2 s^2 L, sky_across2 t^2 L, sky_upward_sunward z s L,
-//   sky_upward3 z^3 L, integrated over the upper hemisphere [W/m2].
+//   integrated over the upper hemisphere [W/m2].
 // Deviations: V is linear in the direction; the land takes from each moment what it takes of an even sky's; trees are the atlas' own
 // neighbours, whatever the map has thinned.
 
@@ -25,16 +25,13 @@ Skylight sky_light(Spot spot) {
     vec3 even = sky_even * land.x;
     vec3 upward = sky_upward * land.w;
     vec3 upward2 = sky_upward2 * (1.0 - hidden * sqrt(hidden));
-    vec3 upward3 = sky_upward3 * (1.0 - hidden * hidden);
     vec3 sunward = sky_sunward * land.x + 0.5 * open.x * sky_even;
     vec3 across = 0.5 * open.y * sky_even;
     vec3 aslant = sky_upward_sunward * land.w;
     vec3 whole = max(c * even + up * upward + level.x * sunward + level.y * across, 0.0);
-    vec3 above = clamp(c * upward2 + up * upward3 + level.x * aslant, vec3(0.0), whole);
     vec3 to_s = c * sunward + up * aslant + level.x * sky_sunward2 * land.x;
     vec3 to_t = c * across + level.y * sky_across2 * land.x;
     vec3 to_z = c * upward + up * upward2 + level.x * aslant;
-    // |cos| = 3/16 + 15/16 cos^2 to second order, and what is not above is level alike in every azimuth
-    vec3 upright = 1.40625 * (above - whole / 3.0);
-    return Skylight(0.5 * whole, upright, mat3(to_s * s.x + to_t * t.x, to_s * s.y + to_t * t.y, to_z));
+    // Both sides of a leaf get half of the whole light in the mean over all leaves, and a level one just what comes down.
+    return Skylight(0.5 * whole, 1.5 * (to_z - 0.5 * whole), mat3(to_s * s.x + to_t * t.x, to_s * s.y + to_t * t.y, to_z));
 }

@@ -39,8 +39,7 @@ def moments() -> dict[str, np.ndarray]:
     sunward, across = RAYS[:, :2] @ s, RAYS[:, :2] @ np.array([-s[1], s[0]])
     up = RAYS[:, 2]
     parts = {"sky_even": up**0, "sky_upward": up, "sky_sunward": sunward, "sky_upward2": up**2,
-             "sky_sunward2": sunward**2, "sky_across2": across**2, "sky_upward_sunward": up * sunward,
-             "sky_upward3": up**3}
+             "sky_sunward2": sunward**2, "sky_across2": across**2, "sky_upward_sunward": up * sunward}
     assert set(parts) == set(MOMENTS)
     return {name: (ANGLES[:, None] * part[:, None] * LIGHT).sum(axis=0) for name, part in parts.items()}
 
@@ -91,7 +90,7 @@ def test_light_is_the_integral_over_the_hemisphere(ask: Ask) -> None:
     ("float c = 4.0 * trees.x - 3.0 * trees.w", "float c = trees.x"),
     ("vec2 level = 1.5 *", "vec2 level = -1.5 *"),
     ("c * upward + up * upward2 + level.x * aslant", "c * upward + up * upward2"),
-    ("0.5 * whole, upright", "whole, upright"),
+    ("Skylight(0.5 * whole", "Skylight(whole"),
 ])
 def test_a_wrong_integral_is_found(ask: Ask, spoil: Callable, right: str, wrong: str) -> None:
     with spoil(FILE, right, wrong):
@@ -101,9 +100,8 @@ def test_a_wrong_integral_is_found(ask: Ask, spoil: Callable, right: str, wrong:
 def test_open_ground_takes_the_whole_sky(ask: Ask) -> None:
     light = f"sky_on_ground(vec3(1.0), vec3(0.0, 0.0, 1.0), {SPOT})"
     found = asked(ask, light, (0, 0, 0, 0), wooded=0.0)
-    # of an even sky exactly; of the others as far as |cos| is known to second order
     assert found[0] == pytest.approx(np.pi, rel=1e-3)
-    assert found == pytest.approx(moments()["sky_upward"], rel=0.12)
+    assert found == pytest.approx(moments()["sky_upward"], rel=3e-3), "whatever the sky, level ground takes what comes down"
 
 
 @pytest.mark.parametrize("sine", [0.2, 0.6])
