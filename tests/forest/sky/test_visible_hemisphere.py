@@ -101,7 +101,7 @@ def test_open_ground_takes_the_whole_sky(ask: Ask) -> None:
     light = f"sky_on_ground(vec3(1.0), vec3(0.0, 0.0, 1.0), {SPOT})"
     found = asked(ask, light, (0, 0, 0, 0), wooded=0.0)
     assert found[0] == pytest.approx(np.pi, rel=1e-3)
-    assert found == pytest.approx(moments()["sky_upward"], rel=3e-3), "whatever the sky, level ground takes what comes down"
+    assert found == pytest.approx(moments()["sky_upward"], rel=3e-3), "all that comes down"
 
 
 @pytest.mark.parametrize("sine", [0.2, 0.6])
