@@ -54,9 +54,8 @@ def test_a_case_opens_with_the_survivor_beside_it(page: Page) -> None:
     assert page.locator("#compare select").nth(1).input_value() == "double_horizon_map"
     before = house.state_of(page)["sun"]["azimuth"]
     # Noted in the page: from outside a busy machine would miss a step.
-    page.evaluate(
-        "umbrage.seen = []; umbrage.store.addEventListener('patch', () => umbrage.seen.push(umbrage.store.document.sun.azimuth))"
-    )
+    page.evaluate("""umbrage.seen = [];
+        umbrage.store.addEventListener('patch', () => umbrage.seen.push(umbrage.store.document.sun.azimuth))""")
     page.get_by_role("button", name="Play the sweep").click()
     house.until(page, "umbrage.seen.length >= 8")
     up = [before + 0.25 * turn for turn in (1, 2, 3, 4)]
