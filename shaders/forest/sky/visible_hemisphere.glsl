@@ -6,7 +6,8 @@
 //   sky_even L, sky_upward z L, sky_sunward s L, sky_upward2 z^2 L, sky_sunward2 s^2 L, sky_across2 t^2 L, sky_upward_sunward z s L,
 //   integrated over the upper hemisphere [W/m2].
 // Deviations: V is linear in the direction; the land takes from each moment what it takes of an even sky's; trees are the atlas' own
-// neighbours, whatever the map has thinned.
+// neighbours, whatever the map has thinned. Seen from afar, where coarse voxels stand before the leaves, it is read in the air
+// in front of them and too bright.
 
 Skylight sky_light(Spot spot) {
     vec4 trees = textureLod(sky_seen, spot.place, 0.0);
