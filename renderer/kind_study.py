@@ -164,7 +164,9 @@ class KindStudy:
                         **self._line(isolation, states), "machine": dict(machine), "when": int(time.time()),
                     }  # fmt: skip
                     append(results, known[key])
-                found.append(known[key])
+                # two contenders may mean the same techniques: what is measured once counts for both
+                own = {"label": contender.label, "combination": contender.combination}
+                found.append({**known[key], **own, "parameters": dict(contender.patch)})
             self._truths.clear()
         return found
 

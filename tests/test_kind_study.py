@@ -127,6 +127,16 @@ def test_what_is_known_is_not_drawn_again_and_a_failure_is_tried_again(session: 
     assert len(read(tmp_path / "r.jsonl")) == 5 * (len(CHOSEN) + 1)
 
 
+def test_two_names_for_the_same_techniques_are_drawn_once_and_told_twice(
+    session: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    same = tuple(Contender(name, {"shadow": {"kind": "none"}}) for name in ("one", "other"))
+    monkeypatch.setattr(Plan, "contenders", property(lambda plan: same))
+    found = measured(session, tmp_path / "r.jsonl")
+    assert {label for _, label in found} == {"one", "other"}
+    assert len(read(tmp_path / "r.jsonl")) == 5
+
+
 def test_a_kinds_share_is_told_among_those_that_change_its_pixels(session: Any, tmp_path: Path) -> None:
     study = KindStudy(session, Plan("forest", SIZE, MOVING, STEPS).checked())
     lines = study.masks(tmp_path / "r.jsonl", MACHINE)
