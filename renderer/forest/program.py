@@ -60,6 +60,9 @@ uniform vec2 picture_size;
 uniform vec2 pixel_offset;        // of the sample within its pixel, from the top-left corner
 uniform float sample_shift;       // number of the sample, which turns the jitter"""
 
+LOOK_DECLARATIONS = """uniform sampler2D looked; // of each block: share of the sun at one of its pixels, and where
+uniform sampler2D lit;    // what was lit so, and its distance in m"""
+
 RAY_OF_PIXEL = """// From sample to sample the low-discrepancy sequence R4 of Roberts 2018; from pixel to pixel
 // the interleaved gradient noise of Jimenez 2014, "Next Generation Post Processing in Call of Duty".
 const vec4 JITTER_TURNS = vec4(0.8566748838545029, 0.7338918566271260, 0.6287067210378087, 0.5385972572236101);
@@ -97,11 +100,43 @@ void main() {
     // A ray that reached nothing has no place: the faded share comes off the opacity of the others, right in the mean.
     float faded = reached * (1.0 - land_kept(place.xy));
     vec3 light = outgoing(place, vec4(voxel.xyz * 65535.0, 0.0), level, -direction);
-    radiance = vec4((reached - faded) * light, voxel.w - faded);
-#if BACKGROUND_SKY == 1
-    radiance.rgb += (1.0 - radiance.a) * (sky_radiance(direction) + sky_sun_disc(direction));
-    radiance.a = 1.0;
+#if LOOK > 0
+    radiance = vec4((reached - faded) * light, reached == 0.0 ? -1.0 : found.x);
+#else
+    radiance = before_sky((reached - faded) * light, voxel.w - faded, direction);
 #endif
+}"""
+
+BEFORE_SKY = """vec4 before_sky(vec3 light, float opacity, vec3 direction) {
+#if BACKGROUND_SKY == 1
+    return vec4(light + (1.0 - opacity) * (sky_radiance(direction) + sky_sun_disc(direction)), 1.0);
+#else
+    return vec4(light, opacity);
+#endif
+}
+"""
+
+LOOK_BODY = """layout(location = 0) out vec4 look;
+void main() {
+    vec2 found;
+    float number;
+    ivec2 pixel = looking_pixel(ivec2(gl_FragCoord.xy), found, number);
+    vec3 origin, direction;
+    camera_ray(picture_pixel(vec2(pixel) + 0.5, picture_size) - 0.5 + pixel_offset, origin, direction);
+    vec3 place = origin + (found.y == NOTHING ? 0.0 : found.x) * direction;
+    float h = max(found.y >= WOOD ? found.y - WOOD : found.y, 0.0);
+    look = vec4(shadow_visibility(place, h, atlas_coordinate(place.xy)), found, number);
+}"""
+
+SMOOTH_BODY = """layout(location = 0) out vec4 radiance;
+void main() {
+    vec2 corner;
+    vec3 origin, direction;
+    pixel_ray(corner, origin, direction);
+    vec4 seen = smoothed(ivec2(gl_FragCoord.xy));
+    float faded = seen.a < 0.0 ? 0.0 : 1.0 - land_kept((origin + seen.a * direction).xy);
+    float opacity = texelFetch(traced_voxel, ivec2(gl_FragCoord.xy), 0).w - faded;
+    radiance = before_sky(seen.rgb, opacity, direction);
 }"""
 
 TRACE_SLOTS = ("geometry", "filter")
@@ -137,13 +172,29 @@ def trace_source(state: ForestState) -> Source:
     return _composed(_chosen(state, TRACE_SLOTS), *files, body, True, state.cover.local_heights)
 
 
-def shade_source(state: ForestState) -> Source:
-    """The fragment stage that lights what was traced."""
+def shade_source(state: ForestState, look: int = 0) -> Source:
+    """The fragment stage that lights what was traced; with what `look_source` found where `look` is not 0, and into a
+    picture that `smooth_source` brings to its place."""
     slots = tuple(slot for slot in state.techniques() if slot != "geometry")
-    body = SHADE_BODY
-    sky = state.view.background == "sky"
     before, after = ("forest/matter.glsl",), ("forest/fading.glsl", "forest/shade.glsl")
-    return _composed(_chosen(state, slots), before, after, body, sky, state.cover.local_heights)
+    return _shading(state, slots, before, after, SHADE_BODY, look)
+
+
+def look_source(state: ForestState, look: int) -> Source:
+    """The fragment stage that looks for the sun from one pixel of each block, `look` pixels a side."""
+    return _shading(state, ("shadow", "filter"), (), ("forest/first_look.glsl",), LOOK_BODY, look)
+
+
+def smooth_source(state: ForestState, look: int) -> Source:
+    """The fragment stage that smooths what was lit so, and lays it before the sky."""
+    return _shading(state, ("filter",), (), ("forest/fading.glsl", "forest/first_look.glsl"), SMOOTH_BODY, look)
+
+
+def _shading(
+    state: ForestState, slots: tuple[str, ...], before: tuple[str, ...], after: tuple[str, ...], body: str, look: int
+) -> Source:
+    sky = state.view.background == "sky"
+    return _composed(_chosen(state, slots), before, after, BEFORE_SKY + body, sky, state.cover.local_heights, look)
 
 
 def _chosen(state: ForestState, slots: tuple[str, ...]) -> Chosen:
@@ -154,13 +205,14 @@ def _chosen(state: ForestState, slots: tuple[str, ...]) -> Chosen:
 
 @functools.lru_cache(maxsize=256)
 def _composed(
-    chosen: Chosen, before: tuple[str, ...], after: tuple[str, ...], body: str, sky: bool, local: bool
+    chosen: Chosen, before: tuple[str, ...], after: tuple[str, ...], body: str, sky: bool, local: bool, look: int = 0
 ) -> Source:
     files = ["lib/pixel.glsl", "lib/camera.glsl", "lib/sky.glsl", "forest/world.glsl", "forest/events.glsl", *before]
     files += [glsl_file("forest", slot, technique.model_fields["kind"].default) for slot, technique, _ in chosen]
     files += after
     declarations = [CAMERA_DECLARATIONS, SKY_DECLARATIONS, WORLD_DECLARATIONS, uniform_declarations(Ground, "ground")]
-    macros = _limits(local) | {"BACKGROUND_SKY": int(sky)}
+    declarations += [LOOK_DECLARATIONS] if look else []
+    macros = _limits(local) | {"BACKGROUND_SKY": int(sky), "LOOK": look}
     for slot, technique, build in chosen:
         declarations += [f"uniform {kind} {slot}_{name};" for name, kind in technique.textures.items()]
         declarations += [uniform_declarations(technique, slot), *technique.extra_declarations]
@@ -200,6 +252,7 @@ def _limits(local: bool = False) -> dict[str, str | int]:
     """Macros of every program; `local` where trees are taller at one place than at another."""
     return {
         "LOCAL_CANOPY": int(local),
+        "LOOK": 0,
         "ENTRY_STEPS": ENTRY_STEPS,
         "MARCH_STEPS": MARCH_STEPS,
         "TILE_MAP": f"{TILE_MAP}.0",

@@ -10,6 +10,7 @@ import numpy as np
 
 from renderer.core.params import uniforms
 from renderer.core.technique import BakedArrays
+from renderer.forest.first_look import FirstLook
 from renderer.forest.pattern import tallest
 from renderer.forest.program import SCOUT_BLOCKS, TRACE_SLOTS, pass_source, scout_source, shade_source, trace_source
 from renderer.forest.technique import ForestTechnique
@@ -58,6 +59,7 @@ class ForestRenderer:
         self._moment = Resident(gl, 24, MOMENTS_KEPT)
         self._scouts = {side: LayerStore(gl, ((1, "f4"),), SCOUTS_KEPT) for side in SCOUT_BLOCKS}
         self._traces = LayerStore(gl, ((2, "f4"), (4, "nu2")), TRACES_KEPT)
+        self._first = FirstLook(gl)
         self._bounds: dict[tuple[str, str], dict[str, Any]] = {}
 
     def prepare(
@@ -81,7 +83,10 @@ class ForestRenderer:
         traced = self._traced(state, baked, (size, offset, sample), values, textures)
         values |= self._shadow_pass(state, baked, size, values, textures)
         self._technique_textures(state, baked, textures)
-        return shade_source(state), {**textures, **self._sky(state, baked), **traced}, values
+        held = {**textures, **self._sky(state, baked), **traced}
+        if sample == 0 and state.shadow.first_look():
+            return self._first.prepare(state, size, held, values)
+        return shade_source(state), held, values
 
     def draw(self, prepared: Prepared) -> None:
         """Light a prepared sample: linear premultiplied radiance into the bound framebuffer."""
@@ -92,6 +97,7 @@ class ForestRenderer:
         self._baked.release()
         self._moment.release()
         self._traces.release()
+        self._first.release()
         for store in self._scouts.values():
             store.release()
 

@@ -57,6 +57,11 @@ class ForestTechnique(Technique):
         """The precomputations this technique needs beside the terrain and the pattern."""
         return []
 
+    def first_look(self) -> int:
+        """Pixels a side of the blocks that share one look at the sun in a picture's first sample; 0 where each pixel
+        has its own."""
+        return 0
+
     def constants(self) -> dict[str, Any]:
         """Values of `extra_declarations` that follow from the technique's own parameters."""
         return {}

@@ -4,6 +4,7 @@
 // The slots' functions are composed in front of this file.
 
 #include "forest/patches.glsl"
+#include "forest/first_look.glsl"
 
 vec3 outgoing(vec4 place, vec4 voxel, float level, vec3 to_eye) {
     bool on_ground = place.w == GROUND;
@@ -23,6 +24,10 @@ vec3 outgoing(vec4 place, vec4 voxel, float level, vec3 to_eye) {
     Skylight light = sky_light(Spot(place.xyz, matter.place, level, wooded, mix(1.0, texel.a, wooded)));
     vec3 from_sky = on_ground ? sky_on_ground(soil, slope, light) : sky_answer(matter, to_eye, light);
     float factor = mix(1.0, height_factor(h), wooded);
+#if LOOK > 0
+    float visible = looked_visibility();
+#else
     float visible = shadow_visibility(place.xyz, h, uv);
+#endif
     return (sun_irradiance * visible * sun_answer + INVERSE_PI * from_sky) * factor;
 }

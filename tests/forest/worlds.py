@@ -114,7 +114,7 @@ PINNED: dict[str, dict[str, Any]] = {
     "horizon_volume": {"sectors": 8, "levels": 8, "highest": 0.85, "strength": 1.0},
     "depth_shadow_map": {"resolution": 1024, "threshold": 0.3, "bias": 0.75, "strength": 1.0},
     "fourier_opacity_map": {"resolution": 512, "coefficients": 15, "level": 0.0, "damping": 0.0, "strength": 1.0},
-    "sun_march": {"step": 1.0, "growth": 0.4, "bias": -1.5, "stop": 0.02},
+    "sun_march": {"step": 1.0, "growth": 0.4, "bias": -1.5, "stop": 0.02, "blocks": 1},
     "voxel_transmittance": {"coefficients": 16, "strength": 1.0},
     "empirical": {"strength": 1.0, "foot": 0.5, "rise": 1.0},
     "gouraud": {"strength": 1.0},

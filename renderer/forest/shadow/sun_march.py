@@ -50,6 +50,20 @@ class SunMarch(ForestTechnique):
         0.02, label="Early stop", help="Transmittance below which the rest is dark.", unit="ratio", ge=0, le=0.5
     )
 
+    blocks: int = param(
+        3,
+        label="First look",
+        help="Pixels a side of the blocks that share one ray in the first sample, which is smoothed; 1: each has one.",
+        unit="px",
+        cost="host",
+        ge=1,
+        le=4,
+    )
+
+    def first_look(self) -> int:
+        """Blocks, unless each pixel has a ray of its own."""
+        return self.blocks if self.blocks > 1 else 0
+
     def bakes(self, state: ForestState, terrain: Bake, pattern: Bake) -> list[Bake]:
         """The tops of the stands."""
         return [stand_tops_bake(terrain, pattern)]

@@ -1,0 +1,68 @@
+"""The first sample of a picture: one look at the sun for a block of pixels, smoothed over what lies alike.
+
+What it costs to follow the sun's ray from every pixel is paid by the samples that refine a picture, not by the one that
+is shown while the sun moves; and that one is quieter than a sample which keeps one place of each ray. It is one of the
+samples of the mean, so that its smoothing fades from the picture as they are added.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+from renderer.forest.program import look_source, shade_source, smooth_source
+from renderer.gl.context import GL
+from renderer.gl.layers import Layers
+from renderer.gl.program import AnyTexture
+from renderer.gl.source import Source
+from renderer.gl.targets import run_fullscreen
+
+if TYPE_CHECKING:
+    from renderer.forest.state import ForestState
+
+SIZES_KEPT = 2
+"""Sizes of pictures whose targets are kept: two pictures side by side, drawn in turns."""
+
+
+class FirstLook:
+    """Targets of the first sample, and the passes that fill them; used on the GL thread only."""
+
+    def __init__(self, gl: GL) -> None:
+        self._gl = gl
+        self._kept: dict[tuple[tuple[int, int], int], tuple[Layers, Layers]] = {}
+
+    def prepare(
+        self, state: ForestState, size: tuple[int, int], textures: Mapping[str, AnyTexture], values: Mapping[str, Any]
+    ) -> tuple[Source, dict[str, AnyTexture], dict[str, Any]]:
+        """Look for the sun and light a sample; what lays it into the bound framebuffer.
+
+        Args:
+            state: its shadow technique has a `first_look`.
+            size: (width, height) in pixels.
+            textures, values: of the frame, with what was traced.
+        """
+        side = state.shadow.first_look()
+        looked, lit = self._targets(size, side)
+        looked.use()
+        run_fullscreen(self._gl, look_source(state, side), textures, values)
+        found = {**textures, "looked": looked.textures[0]}
+        lit.use()
+        run_fullscreen(self._gl, shade_source(state, side), found, values)
+        return smooth_source(state, side), {**textures, "lit": lit.textures[0]}, dict(values)
+
+    def release(self) -> None:
+        """Free every target."""
+        while self._kept:
+            for layers in self._kept.popitem()[1]:
+                layers.release()
+
+    def _targets(self, size: tuple[int, int], side: int) -> tuple[Layers, Layers]:
+        key = (size, side)
+        if key not in self._kept:
+            while len(self._kept) >= SIZES_KEPT:
+                for layers in self._kept.pop(next(iter(self._kept))):
+                    layers.release()
+            blocks = (-(-size[0] // side), -(-size[1] // side))
+            self._kept[key] = (Layers(self._gl, *blocks, ((4, "f4"),)), Layers(self._gl, *size, ((4, "f4"),)))
+        self._kept[key] = self._kept.pop(key)
+        return self._kept[key]

@@ -1,0 +1,77 @@
+"""The first sample of a picture: nothing is changed where all is alike, it is quiet where it is not, and fades out."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+
+from renderer import view
+from renderer.gl.thread import GLThread
+from tests.forest import worlds
+from tests.forest.truth import SCENE, SIDE, grove
+
+Spoil = Callable[..., Any]
+
+
+def drawn(thread: GLThread, painter: view.Painter, samples: int, blocks: int, patch: dict[str, Any] | None = None,
+          size: tuple[int, int] = (SIDE, SIDE)) -> np.ndarray:
+    """The grove with a traced shadow, (H, W, 4) float64."""
+    march = worlds.technique("shadow", "sun_march", step=1.0, growth=0.0, bias=-1.5, stop=0.02, blocks=blocks)
+    made = worlds.state(**{**SCENE, **worlds.PLAIN, "shadow": march, **(patch or {})})
+    return view.paint(thread, painter, made, grove(made), size, samples).linear.astype(np.float64)
+
+
+@pytest.fixture(scope="module")
+def settled(thread: GLThread, painter: view.Painter) -> np.ndarray:
+    """The picture of many samples, none of them a first look."""
+    return drawn(thread, painter, 256, 1)
+
+
+def off(found: np.ndarray, wanted: np.ndarray) -> float:
+    """Relative RMSE of the colours."""
+    return float(np.sqrt(np.mean((found - wanted)[..., :3] ** 2)) / wanted[..., :3].mean())
+
+
+@pytest.mark.parametrize(("blocks", "share"), [(2, 0.85), (3, 1.0)])
+def test_the_first_sample_is_quieter_than_a_plain_one(
+    thread: GLThread, painter: view.Painter, settled: np.ndarray, blocks: int, share: float
+) -> None:
+    # Close by, where a block spans half a crown; over a valley it has half the noise of a plain sample.
+    plain, first = (off(drawn(thread, painter, 1, side), settled) for side in (1, blocks))
+    assert first < share * plain
+
+
+def test_it_fades_from_the_picture(thread: GLThread, painter: view.Painter, settled: np.ndarray) -> None:
+    apart = off(drawn(thread, painter, 256, 3), drawn(thread, painter, 256, 1))
+    assert apart < off(drawn(thread, painter, 1, 3), settled) / 128
+
+
+def test_its_brightness_is_that_of_the_picture(thread: GLThread, painter: view.Painter, settled: np.ndarray) -> None:
+    first = drawn(thread, painter, 1, 3)
+    # One look for nine pixels: two deviations of the mean over some five hundred of them.
+    assert first[..., :3].mean() == pytest.approx(settled[..., :3].mean(), rel=0.1)
+
+
+def test_opacity_is_each_pixels_own(thread: GLThread, painter: view.Painter) -> None:
+    shares = [drawn(thread, painter, 1, side, {"view": {"background": "none"}})[..., 3] for side in (1, 3)]
+    np.testing.assert_allclose(*shares, atol=2e-6)
+
+
+def test_a_size_that_blocks_do_not_divide_is_drawn_to_its_rim(thread: GLThread, painter: view.Painter) -> None:
+    odd = drawn(thread, painter, 1, 3, size=(50, 37))
+    assert odd.shape == (37, 50, 4)
+    assert np.isfinite(odd).all()
+    lit = odd[..., :3].sum(axis=-1)
+    assert lit[-1].min() > 0
+    assert lit[:, -1].max() > 0
+
+
+def test_smoothing_across_distances_is_found(
+    thread: GLThread, painter: view.Painter, settled: np.ndarray, spoil: Spoil
+) -> None:
+    right = off(drawn(thread, painter, 1, 3), settled)
+    with spoil("forest/first_look.glsl", "near * near * alike(own.x, other.y)", "near * near * (1.0 - other.x)"):
+        assert off(drawn(thread, painter, 1, 3), settled) > 1.2 * right
