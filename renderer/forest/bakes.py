@@ -27,7 +27,7 @@ def ground_bake(state: ForestState) -> Bake:
 
 def pattern_bake(state: ForestState) -> Bake:
     """The texture-cell atlas."""
-    return Bake("pattern", bake_pattern, bake_arguments(state.canopy), version=5, seconds=12)
+    return Bake("pattern", bake_pattern, bake_arguments(state.canopy), version=10, seconds=16)
 
 
 def terrain_horizon_bake(terrain: Bake, sectors: int) -> Bake:

@@ -16,6 +16,7 @@ from renderer.forest.pattern_kernels import extend, lay
 from renderer.forest.pattern_mips import encode_colour, encode_normal, mips
 from renderer.forest.planting import Standing, plant
 from renderer.forest.safe_distance import safe_distance
+from renderer.forest.seen_levels import OPAQUE, seen_levels
 from renderer.forest.tiles import RHOMBI, lattice, tile_table
 from renderer.forest.tree import Tree
 from renderer.forest.world_scale import CANOPY_HEIGHT, TILE_SIDE, VOXEL
@@ -35,10 +36,6 @@ AXES = lattice(VOXEL)
 
 WOOD = 128
 """Mark of trunk and branch in the byte that holds a tree's rank."""
-
-OPAQUE = np.float32(1 - 2**-12)
-"""Opacity at which extinction is cut off."""
-
 
 @dataclass(frozen=True)
 class Atlas:
@@ -123,8 +120,8 @@ def bake_pattern(
         share of the sky's light;
         `anchor` uint8 [.., 4]: offset east and north to the tree's foot, 128 + 16 a metre; safe distance in voxels
         (Chebyshev distance to matter); the tree's rank (`planting.ranked`), plus WOOD in wood;
-        the same with `_1` to `_5` at coarser levels (opacity over the
-        level's own voxel length); `tile` uint8 [is_down, variant, key, 2]: see `tiles`; `trees` float32 [n, 6]: foot
+        the same with `_1` to `_5` at coarser levels (opacity over the level's own voxel length); `seen_1` to `seen_5`
+        as in `seen_levels`; `tile` uint8 [is_down, variant, key, 2]: see `tiles`; `trees` float32 [n, 6]: foot
         x and y in the atlas [m, world axes], height and crown radius [m], number of the species, number of the mesh.
     """
     progress(0.0, "growing trees")
@@ -144,6 +141,7 @@ def bake_pattern(
     result = dict(level)
     for number, coarse in enumerate(mips(level), start=1):
         result |= {f"{name}_{number}": array for name, array in coarse.items()}
+    result |= seen_levels(level, AXES, VOXEL, lambda share: progress(0.92 + 0.08 * share, "making coarser levels"))
     return {**result, "tile": tile_table(), "trees": _list(standing, meshes, kinds)}
 
 

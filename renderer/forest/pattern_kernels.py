@@ -134,17 +134,17 @@ def add_transmittance(extinction, shift, path, parts, weight, prefix, result):
         layer = np.zeros((rows, columns), np.float32)
         for part in range(parts):
             place = k + (part + 0.5) / parts - 0.5
-            _gather(extinction[k], place * shift[0], place * shift[1], np.float32(path / parts), layer)
+            gather(extinction[k], place * shift[0], place * shift[1], np.float32(path / parts), layer)
         prefix[k] = above + np.float32(0.5) * layer
         above += layer
     for k in range(layers):
         layer = np.zeros((rows, columns), np.float32)
-        _gather(prefix[k], -k * shift[0], -k * shift[1], np.float32(1.0), layer)
+        gather(prefix[k], -k * shift[0], -k * shift[1], np.float32(1.0), layer)
         result[k] += np.float32(weight) * np.exp(-layer)
 
 
 @njit(cache=True, nogil=True)
-def _gather(source, di, dj, scale, result):
+def gather(source, di, dj, scale, result):
     """Add `scale` times the periodic image, moved by a fraction of a voxel, to `result`."""
     rows, columns = source.shape
     low_i, low_j = int(np.floor(di)), int(np.floor(dj))

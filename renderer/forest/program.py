@@ -30,7 +30,7 @@ WORLD_DECLARATIONS = """uniform sampler2D heights;        // coefficients of eac
 uniform sampler2D normals;         // of the ground, and its cover
 uniform sampler2D cover;           // share of the trees that stand, and metres to the next
 uniform sampler2D growth;          // height of the stands against the pattern's
-uniform sampler3D pattern_voxels;
+uniform sampler2DArray pattern_voxels;
 uniform sampler3D pattern_normal;
 uniform sampler2D tiles;
 uniform sampler2D scout;          // m: where the rays of a block of pixels begin, row 0 the top

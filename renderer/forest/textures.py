@@ -79,7 +79,12 @@ def packed(colour: np.ndarray, anchor: np.ndarray) -> np.ndarray:
 
     Two bytes in each: red and green, blue and opacity, foot x and y, distance and wood.
     """
-    both = np.concatenate([colour, anchor], axis=-1).astype(np.uint16)
+    return paired(np.concatenate([colour, anchor], axis=-1))
+
+
+def paired(given: np.ndarray) -> np.ndarray:
+    """Two bytes in each 16-bit number, the first the higher."""
+    both = given.astype(np.uint16)
     return both[..., 0::2] * np.uint16(256) + both[..., 1::2]
 
 
@@ -106,14 +111,14 @@ def technique_textures(
 
 def pattern_textures(gl: GL, pattern: Arrays) -> dict[str, AnyTexture]:
     """`pattern_voxels` and `pattern_normal` from the `pattern` bake, with its own mip levels."""
-    levels = [{name: pattern[f"{name}{end}"] for name in ("colour", "normal", "anchor")} for end in _endings(pattern)]
-    voxels = [packed(level["colour"], level["anchor"]) for level in levels]
-    normals_of = [level["normal"] for level in levels]
+    ends = _endings(pattern)
+    coarse = [paired(pattern[f"seen{end}"]) for end in ends[1:]]
+    normals_of = [pattern[f"normal{end}"] for end in ends]
     shaded = gl.texture3d(normals_of[0], "linear", ATLAS_WRAP, normals_of[1:])
     # The level asked for is always whole: blending two levels would fetch twice for nothing.
     shaded.filter = moderngl.LINEAR_MIPMAP_NEAREST, moderngl.LINEAR
     return {
-        "pattern_voxels": gl.texture3d(voxels[0], "nearest", ATLAS_WRAP, voxels[1:]),
+        "pattern_voxels": gl.texture_array(packed(pattern["colour"], pattern["anchor"]), "nearest", "repeat", coarse),
         "pattern_normal": shaded,
     }
 

@@ -143,9 +143,9 @@ class GL:
         return textures.texture3d(self.ctx, data, filter, wrap, mips)
 
     def texture_array(self, data: np.ndarray, filter: Filter = "linear",  # noqa: A002
-                      wrap: Wrap = "clamp") -> moderngl.TextureArray:
+                      wrap: Wrap = "clamp", mips: Sequence[np.ndarray] = ()) -> moderngl.TextureArray:
         """An array of 2D textures: see `textures.texture_array`."""
-        return textures.texture_array(self.ctx, data, filter, wrap)
+        return textures.texture_array(self.ctx, data, filter, wrap, mips)
 
     def own(self, made: Object) -> Object:
         """Count an object that has `release()` and was not made through `ctx`; returns it."""

@@ -17,7 +17,7 @@ Wrap = Literal["clamp", "repeat"]
 _DTYPES = {"uint8": "f1", "float16": "f2", "float32": "f4", "uint16": "nu2", "int32": "i4", "uint32": "u4"}
 _INTEGER = ("i4", "u4")
 # OpenGL registry values.
-_TEXTURE_3D, _TEXTURE0, _UNPACK_ALIGNMENT = 0x806F, 0x84C0, 0x0CF5
+_TEXTURE_3D, _TEXTURE_2D_ARRAY, _TEXTURE0, _UNPACK_ALIGNMENT = 0x806F, 0x8C1A, 0x84C0, 0x0CF5
 _FORMATS = {1: 0x1903, 2: 0x8227, 3: 0x1907, 4: 0x1908}  # RED, RG, RGB, RGBA
 _TYPES = {"f1": 0x1401, "f2": 0x140B, "f4": 0x1406, "nu2": 0x1403}  # UNSIGNED_BYTE, HALF_FLOAT, FLOAT, UNSIGNED_SHORT
 
@@ -51,16 +51,20 @@ def texture2d(ctx: moderngl.Context, data: np.ndarray, filter: Filter = "linear"
 
 
 def texture_array(ctx: moderngl.Context, data: np.ndarray, filter: Filter = "linear",  # noqa: A002
-                  wrap: Wrap = "clamp") -> moderngl.TextureArray:
-    """An array of 2D textures from (layers, rows, columns[, components]); see `texture2d`."""
-    levels = _levels(data, (), 3)
+                  wrap: Wrap = "clamp", mips: Sequence[np.ndarray] = ()) -> moderngl.TextureArray:
+    """An array of 2D textures from (layers, rows, columns[, components]), all in each level; see `texture2d`."""
+    levels = _levels(data, mips, 3, kept=1)
     layers, rows, columns, components = levels[0].shape
     _check_size(ctx, "GL_MAX_TEXTURE_SIZE", rows, columns)
     _check_size(ctx, "GL_MAX_ARRAY_TEXTURE_LAYERS", layers)
     texture = ctx.texture_array((columns, rows, layers), components, levels[0].tobytes(),
                                 dtype=_DTYPES[data.dtype.name], alignment=1)
+    if mips:
+        texture.build_mipmaps(0, len(mips))
+        for number, level in enumerate(levels[1:], start=1):
+            _write_level(ctx, texture, number, level)
     texture.repeat_x = texture.repeat_y = wrap == "repeat"
-    texture.filter = _filter(texture.dtype, filter, False)
+    texture.filter = _filter(texture.dtype, filter, bool(mips))
     return texture
 
 
@@ -94,8 +98,8 @@ def sampler_type(texture: Any) -> str:
     return prefix + kinds[type(texture)]
 
 
-def _levels(data: np.ndarray, mips: Sequence[np.ndarray], dimensions: int) -> list[np.ndarray]:
-    """Every level with its components as last axis, checked."""
+def _levels(data: np.ndarray, mips: Sequence[np.ndarray], dimensions: int, kept: int = 0) -> list[np.ndarray]:
+    """Every level with its components as last axis, checked; the first `kept` axes have the same size in all."""
     if data.dtype.name not in _DTYPES:
         raise UmbrageError(f"no texture holds {data.dtype.name}; it may be {', '.join(_DTYPES)}")
     if mips and _DTYPES[data.dtype.name] in _INTEGER:
@@ -103,7 +107,8 @@ def _levels(data: np.ndarray, mips: Sequence[np.ndarray], dimensions: int) -> li
     levels = []
     for number, level in enumerate((data, *mips)):
         shaped = level[..., None] if level.ndim == dimensions else level
-        wanted = tuple(max(1, side >> number) for side in data.shape[:dimensions])
+        halved = (max(1, side >> number) for side in data.shape[kept:dimensions])
+        wanted = (*data.shape[:kept], *halved)
         if shaped.ndim != dimensions + 1 or not 1 <= shaped.shape[-1] <= 4 or 0 in shaped.shape:
             raise UmbrageError(f"a {dimensions}D texture is not made from an array of shape {level.shape}")
         if level.dtype != data.dtype or shaped.shape[:dimensions] != wanted:
@@ -125,16 +130,18 @@ def _check_size(ctx: moderngl.Context, limit: str, *sides: int) -> None:
                          f"at most {allowed} a side")
 
 
-def _write_level(ctx: moderngl.Context, texture: moderngl.Texture3D, number: int, level: np.ndarray) -> None:
-    """Upload one mip level of a 3D texture, for which moderngl has no call."""
+def _write_level(ctx: moderngl.Context, texture: moderngl.Texture3D | moderngl.TextureArray, number: int,
+                 level: np.ndarray) -> None:
+    """Upload one mip level of a 3D texture or an array, for which moderngl has no call."""
+    target = _TEXTURE_3D if isinstance(texture, moderngl.Texture3D) else _TEXTURE_2D_ARRAY
     layers, rows, columns, components = level.shape
     unit = ctx.default_texture_unit  # the one that moderngl itself binds for uploads
     pixels = level.ctypes.data_as(ctypes.c_void_p)
     _gl(ctx, "glActiveTexture", ctypes.c_uint)(_TEXTURE0 + unit)
-    _gl(ctx, "glBindTexture", ctypes.c_uint, ctypes.c_uint)(_TEXTURE_3D, texture.glo)
+    _gl(ctx, "glBindTexture", ctypes.c_uint, ctypes.c_uint)(target, texture.glo)
     _gl(ctx, "glPixelStorei", ctypes.c_uint, ctypes.c_int)(_UNPACK_ALIGNMENT, 1)
     upload = _gl(ctx, "glTexSubImage3D", ctypes.c_uint, *(ctypes.c_int,) * 7, *(ctypes.c_uint,) * 2, ctypes.c_void_p)
-    upload(_TEXTURE_3D, number, 0, 0, 0, columns, rows, layers, _FORMATS[components], _TYPES[texture.dtype], pixels)
+    upload(target, number, 0, 0, 0, columns, rows, layers, _FORMATS[components], _TYPES[texture.dtype], pixels)
 
 
 def _gl(ctx: moderngl.Context, name: str, *arguments: Any) -> Any:

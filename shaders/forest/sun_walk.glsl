@@ -20,7 +20,7 @@ float first_sunward(vec2 line, float texel, float threshold) {
     float t = canopy_entry(origin, direction, 0.0);
     float level = floor(clamp(log2(texel / voxel_size), 0.0, COARSEST) + 0.5);
     float ds = voxel_size * exp2(level);
-    float rate = voxel_rate(direction) / exp2(level);
+    float rate = voxel_rate(direction);
     float wanted = -log(1.0 - threshold);
     float gathered = 0.0;
     float previous = t;
@@ -34,7 +34,7 @@ float first_sunward(vec2 line, float texel, float threshold) {
         float layer = layer_height(p.xy);
         vec4 voxel = voxel_at(vec3(atlas_coordinate(p.xy), clamp(above / layer, 0.0, 1.0)), level);
         vec2 stand = stand_of(p.xy, voxel);
-        float depth = above > layer ? 0.0 : -log(1.0 - opacity_of(voxel)) * stand.x;
+        float depth = above > layer ? 0.0 : -log(1.0 - opacity_of(voxel)) * ds / voxel_size * stand.x;
         found = above <= 0.0 ? 2 : t > scene_reach ? 0 : gathered + depth >= wanted ? 3 : 1;
         if (found == 1) {
             gathered += depth;

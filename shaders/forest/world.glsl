@@ -63,8 +63,9 @@ vec2 atlas_coordinate(vec2 xy) {
 }
 
 // One voxel of a level, nearest to a place (u, v, h): red green, blue opacity, foot x y, distance wood, two bytes a channel.
+// Coarser levels halve its sides, not its height; opacity stays that of one voxel's length of the finest.
 vec4 voxel_at(vec3 place, float level) {
-    return textureLod(pattern_voxels, place, level) * 65535.0;
+    return textureLod(pattern_voxels, vec3(place.xy, place.z * canopy_height / voxel_size - 0.5), level) * 65535.0;
 }
 
 // Offset in atlas coordinates, for level 0, that makes the mean of nearest voxels trilinear interpolation: a box one voxel wide.
@@ -82,12 +83,13 @@ float opacity_of(vec4 voxel) {
     return min(two_bytes(voxel.y).y / 255.0, 0.99975586);
 }
 
-vec3 albedo_of(vec4 voxel) {
+// Associated with opacity at the finest level; coarser ones have too little of it to divide by.
+vec3 albedo_of(vec4 voxel, float level) {
     vec4 bytes = vec4(two_bytes(voxel.x), two_bytes(voxel.y));
-    return bytes.rgb / max(bytes.a, 1.0);
+    return bytes.rgb / (level > 0.5 ? 255.0 : max(bytes.a, 1.0));
 }
 
-// Voxels of the level that are free all around.
+// Voxels of the finest level that are free all around.
 float free_voxels(vec4 voxel) {
     return two_bytes(voxel.w).x;
 }

@@ -188,7 +188,7 @@ def voxel_pattern() -> dict[str, np.ndarray]:
 
 
 BODY = """vec4 voxel = voxel_at(vec3(uv, h), 0.0);
-vec3 albedo = albedo_of(voxel);
+vec3 albedo = albedo_of(voxel, 0.0);
 vec2 foot = foot_of(vec2(0.0), voxel);
 result[0] = albedo.r; result[1] = albedo.g; result[2] = albedo.b; result[3] = opacity_of(voxel);
 result[4] = foot.x; result[5] = foot.y; result[6] = free_voxels(voxel);"""

@@ -13,9 +13,10 @@ from renderer.core.cache import key_of
 from renderer.core.params import merge, validate
 from renderer.core.registry import techniques
 from renderer.core.technique import Arrays, Bake, BakedArrays
-from renderer.forest.pattern import WOOD
+from renderer.forest.pattern import AXES, WOOD
 from renderer.forest.pattern_mips import mips
 from renderer.forest.safe_distance import safe_distance
+from renderer.forest.seen_levels import seen_levels
 from renderer.forest.state import ForestState
 from renderer.forest.tiles import tile_table
 from renderer.forest.world_scale import CELL, NODES, VOXEL
@@ -58,6 +59,12 @@ def ground(elevation: np.ndarray | float = 0.0, cover: np.ndarray | float = 1.0)
             "growth": np.ones((NODES, NODES), np.float32)}
 
 
+def with_levels(level: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """The finest level of a pattern and the coarser ones made of it."""
+    coarser = {f"{name}_{n}": array for n, given in enumerate(mips(level), 1) for name, array in given.items()}
+    return {**level, **coarser, **seen_levels(level, AXES, VOXEL, lambda share: None)}
+
+
 def uniform(alpha: int, albedo: float = 0.5, ambient: int = 0, layers: slice = slice(None)) -> dict[str, np.ndarray]:
     """The `pattern` bake of a slab: one opacity (of 255, for one voxel's length) in the given layers, up-facing."""
     shape = (LAYERS, 32, 32)
@@ -71,8 +78,7 @@ def uniform(alpha: int, albedo: float = 0.5, ambient: int = 0, layers: slice = s
     normal = np.empty((*shape, 4), np.uint8)
     normal[...] = (*UP, ambient)
     level = {"colour": colour, "normal": normal, "anchor": anchor}
-    coarser = {f"{name}_{n}": array for n, given in enumerate(mips(level), 1) for name, array in given.items()}
-    return {**level, **coarser, "tile": tile_table(), "trees": np.zeros((0, 6), np.float32)}
+    return {**with_levels(level), "tile": tile_table(), "trees": np.zeros((0, 6), np.float32)}
 
 
 def together(**arrays: Arrays) -> dict[str, BakedArrays]:
@@ -197,8 +203,14 @@ def grove_pattern(arguments: dict[str, Any], inputs: dict[str, Arrays], progress
     return {**level, **coarser, "tile": tile_table(), "trees": np.zeros((0, 6), np.float32)}
 
 
+def grove_levels(arguments: dict[str, Any], inputs: dict[str, Arrays], progress: Progress) -> Arrays:
+    """The grove's pattern with all its levels."""
+    pattern = grove_pattern(arguments, inputs, progress)
+    return {**pattern, **seen_levels(pattern, AXES, VOXEL, lambda share: None)}
+
+
 VERSION = zlib.crc32("".join(map(inspect.getsource, (grove_ground, grove_pattern))).encode())
 """Of the grove: its bakes and its references are made anew when it changes."""
 
 GROVE_GROUND = Bake("terrain", grove_ground, {}, version=VERSION)
-GROVE_PATTERN = Bake("pattern", grove_pattern, {}, version=VERSION)
+GROVE_PATTERN = Bake("pattern", grove_levels, {}, version=VERSION)

@@ -95,6 +95,26 @@ def test_an_array_texture_keeps_its_layers_apart(thread: GLThread) -> None:
     np.testing.assert_allclose(thread.call(job).reshape(data.shape) * 255, data, rtol=1e-6)
 
 
+def test_levels_of_an_array_texture_keep_its_layers(thread: GLThread) -> None:
+    data = RNG.integers(0, 256, (3, 4, 8, 4), dtype=np.uint8)
+    half, quarter = (RNG.integers(0, 256, (3, 4 // n, 8 // n, 4), dtype=np.uint8) for n in (2, 4))
+    layer, row, column = np.indices(half.shape[:3]).reshape(3, -1)
+
+    def job(gl: GL) -> np.ndarray:
+        texture = gl.texture_array(data, "nearest", "repeat", [half, quarter])
+        read = probe(gl, [], "texelFetch(image, place, 1)", {"place": np.stack([column, row, layer], axis=1)}, 4,
+                     textures={"image": texture})
+        texture.release()
+        return read
+    np.testing.assert_allclose(thread.call(job).reshape(half.shape) * 255, half, rtol=1e-6)
+
+
+def test_an_array_texture_refuses_levels_of_fewer_layers(thread: GLThread) -> None:
+    data, wrong = np.zeros((4, 4, 4), np.uint8), np.zeros((2, 2, 2), np.uint8)
+    with pytest.raises(UmbrageError, match="mip level 1"):
+        thread.call(lambda gl: gl.texture_array(data, mips=[wrong]))
+
+
 @pytest.mark.parametrize(("dtype", "sampler"), [("int32", "isampler2D"), ("uint32", "usampler2D")])
 def test_integers_stay_integers(thread: GLThread, dtype: str, sampler: str) -> None:
     data = np.array([[2**31 - 1, 5, 16_777_217]], dtype)

@@ -9,7 +9,7 @@ from renderer.forest.technique import ForestTechnique
 
 
 class Mipmap(ForestTechnique):
-    """Coarser voxels as the pixel widens; opacity follows the three axes' own composition."""
+    """Coarser voxels as the pixel widens, as high as the finest; matter counts by the light that reaches it."""
 
     title: ClassVar[str] = "Mip levels"
     caption: ClassVar[str] = "Voxels as wide as the pixel: steady and cheaper far away."

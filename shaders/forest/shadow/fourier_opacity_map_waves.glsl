@@ -56,7 +56,7 @@ void shadow_waves_texel(vec2 pixel, out vec4 texels[1 + (SHADOW_COEFFICIENTS + 3
     vec2 noise = fract(52.9829189 * fract(dot(lattice, vec2(0.06711056, 0.00583715))) * vec2(1.0, 7.0));
     float level = floor(clamp(log2(texel / voxel_size) + shadow_level, 0.0, COARSEST) + noise.y);
     float ds = voxel_size * exp2(level);
-    float rate = voxel_rate(direction) / exp2(level);
+    float rate = voxel_rate(direction);
     float values[SHADOW_COEFFICIENTS];
     for (int k = 0; k < SHADOW_COEFFICIENTS; k++) values[k] = 0.0;
     float first = NEVER;
@@ -72,7 +72,7 @@ void shadow_waves_texel(vec2 pixel, out vec4 texels[1 + (SHADOW_COEFFICIENTS + 3
         float layer = layer_height(p.xy);
         vec4 voxel = voxel_at(vec3(atlas_coordinate(p.xy), clamp(above / layer, 0.0, 1.0)), level);
         vec2 stand = stand_of(p.xy, voxel);
-        float depth = above > layer ? 0.0 : -log(1.0 - opacity_of(voxel)) * stand.x;
+        float depth = above > layer ? 0.0 : -log(1.0 - opacity_of(voxel)) * ds / voxel_size * stand.x;
         found = above <= 0.0 || t >= crossing.z || values[0] >= 1.999 * DARK ? 2 : 1;
         if (found == 1) {
             if (depth > 0.0) {
