@@ -68,10 +68,11 @@ def truth(
     return truth_of(session.compute(truth_bake(state, width, height, judge), on_progress))
 
 
-def converged(session: Session, state: SceneState, width: int, height: int) -> Drawn:
-    """The picture of a state without its sampling noise and without a background, at the reference's positions."""
+def converged(session: Session, state: SceneState, width: int, height: int, passes: int = PASSES) -> Drawn:
+    """The picture of a state without its sampling noise and without a background, at the reference's positions, each of
+    them drawn `passes` times."""
     bare = state.model_copy(update={"view": state.view.model_copy(update={"background": "none"})})
-    whole = session.draw(bare, width, height, POSITIONS * PASSES, place)
+    whole = session.draw(bare, width, height, POSITIONS * passes, place)
     once = session.draw(bare, width, height, 1)
     shown = displayed(whole.linear, state.view, session.exposure_ev(state))
     return Drawn(whole.linear, shown, once.linear, whole.render_ms / 1e3)

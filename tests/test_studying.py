@@ -109,7 +109,7 @@ def test_a_study_leaves_results_tables_and_charts(
 ) -> None:
     drawn: list[Any] = []
 
-    def converged(session: Any, state: Any, width: int, height: int) -> Drawn:
+    def converged(session: Any, state: Any, width: int, height: int, passes: int) -> Drawn:
         drawn.append(state)
         return flat(1 + ERRORS[state.shadow.kind] + (0.01 if state.light.kind == "gouraud" else 0))
 

@@ -23,6 +23,8 @@ COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#0
 """Distinct for colour-blind eyes (Okabe and Ito 2008), their yellow replaced by a brown that shows on white; the last
 four after Tol 2021."""
 
+OWN = "relative_rmse_without_noise"
+
 MARKERS = ("o", "s", "^", "D", "v", "P", "X", "*")
 
 
@@ -33,6 +35,7 @@ class Point:
     Attributes:
         techniques: kind by slot.
         error, worst: median and worst relative RMSE.
+        own, own_worst: the same without the reference's noise; NaN in results that do not tell it.
         flip: median of FLIP's mean.
         gained: median relative RMSE after one gain a picture.
         frame_ms, yardsticks: median interactive frame, the camera at rest; NaN where it was not timed.
@@ -46,6 +49,8 @@ class Point:
     techniques: Mapping[str, str]
     error: float
     worst: float
+    own: float
+    own_worst: float
     flip: float
     gained: float
     frame_ms: float
@@ -119,14 +124,17 @@ def _point(
     turned = [line for line in times if line["parameters"].get("moves") == "camera"]
     rested = [line for line in times if line not in turned]
     slowest = max((line["yardsticks"] for line in rested if line.get("yardsticks")), default=float("nan"))
+    own = [line[OWN] for line in errors if line.get(OWN) is not None]
     return Point(dict(techniques), middle(errors, "relative_rmse"), max(line["relative_rmse"] for line in errors),
+                 middle(errors, OWN), max(own, default=float("nan")),
                  middle(errors, "flip_mean"), middle(errors, "relative_rmse_after_gain"), middle(rested, "frame_ms"),
                  middle(rested, "yardsticks"), slowest, middle(turned, "yardsticks"),
                  max(pairing, default=float("nan")), len(errors), False)
 
 
 COLUMNS: tuple[tuple[str, str], ...] = (
-    ("median relative RMSE", "error"), ("worst", "worst"), ("median after one gain", "gained"), ("median FLIP", "flip"),
+    ("median relative RMSE", "error"), ("worst", "worst"), ("median without the reference's noise", "own"),
+    ("its worst", "own_worst"), ("median after one gain", "gained"), ("median FLIP", "flip"),
     ("frame, ms", "frame_ms"), ("yardsticks", "yardsticks"), ("slowest preset", "slowest"),
     ("camera moving", "moved"), ("noise against the reference's", "pairing"),
     ("cases", "cases"))

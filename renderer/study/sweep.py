@@ -137,15 +137,19 @@ def compare(picture: Drawn, truth: Drawn) -> dict[str, Any]:
     """The numbers of one picture against its reference.
 
     Returns:
-        `relative_rmse`, the same after one global `gain`, FLIP's mean and 95th percentile, and the reference's own
-        error and cost. Where both were also sampled once a pixel, `pairing`: how much farther one frame is from its own
-        converged picture than the reference's is (at most 1.25 for an error and a time to be named together).
+        `relative_rmse`, the same after one global `gain`, and `relative_rmse_without_noise`: less the reference's own
+        noise, whose variance is known and independent of the picture; FLIP's mean and 95th percentile, and the
+        reference's standard error and cost. Where both were also sampled once a pixel, `pairing`: how much farther one
+        frame is from its own converged picture than the reference's is (at most 1.25 for an error and a time to be
+        named together).
     """
     colours = picture.linear[..., :3].astype(np.float64)
     gain = best_gain(colours, truth.linear[..., :3])
     seen = flip(picture.rgb8, truth.rgb8)
+    error = relative_rmse(colours, truth.linear[..., :3])
     found = {
-        "relative_rmse": relative_rmse(colours, truth.linear[..., :3]),
+        "relative_rmse": error,
+        "relative_rmse_without_noise": max(error**2 - truth.standard_error**2, 0.0) ** 0.5,
         "gain": gain,
         "relative_rmse_after_gain": relative_rmse(colours * gain, truth.linear[..., :3]),
         "flip_mean": seen.mean,

@@ -10,7 +10,7 @@ import pytest
 
 from renderer.core.errors import Cancelled, GLUnavailable, InputError
 from renderer.study.charts import pareto, speed_accuracy, summarise, table, write
-from renderer.study.sweep import FRAMES, WARM_UP, Case, Drawn, clock, provenance, read, sweep
+from renderer.study.sweep import FRAMES, WARM_UP, Case, Drawn, clock, compare, provenance, read, sweep
 
 MACHINE = {"renderer": "llvmpipe (test)", "cores": 2, "commit": "abc"}
 ERRORS = {"good": 0.1, "middling": 0.2, "bad": 0.4}
@@ -52,6 +52,19 @@ def test_raw_results_carry_errors_machine_parameters_and_seed(tmp_path: Path) ->
     assert first["relative_rmse_after_gain"] == pytest.approx(0, abs=1e-12)
     assert first["gain"] == pytest.approx(1 / 1.1)
     assert first["reference_standard_error"] == 0.005
+
+
+def test_the_references_own_noise_is_no_error_of_the_picture() -> None:
+    exact = np.random.default_rng(4).uniform(0.5, 1.5, (128, 128, 1)) * [1.0, 0.8, 0.4]
+    noise = np.random.default_rng(5).normal(0, 0.3, (128, 128, 1)) * np.ones(3)
+    shown = np.zeros((128, 128, 3), np.uint8)
+    judged = Drawn(exact + noise, shown, standard_error=0.3 / exact.mean())
+    found = compare(Drawn(exact * 1.1, shown), judged)
+    right = 0.1 * np.sqrt((exact**2).mean()) / exact.mean()
+    assert found["relative_rmse"] > 3 * right
+    # Of 16,384 pixels the noise's own square is known to 1 %, and what is left to a tenth of it.
+    assert found["relative_rmse_without_noise"] == pytest.approx(right, rel=0.15)
+    assert compare(judged, judged)["relative_rmse_without_noise"] == 0
 
 
 def test_a_stopped_sweep_goes_on_where_it_was(tmp_path: Path) -> None:
