@@ -136,7 +136,8 @@ class _Job:
                 self._workers.discard(executor)
                 if last:
                     raise UmbrageError(f"the process that computed {self._bakes[-1].name} ended unexpectedly, "
-                                       "perhaps for want of memory") from None
+                                       "perhaps for want of memory, or of 'if __name__ == \"__main__\":' around what a "
+                                       "script does") from None
 
     def _wait(self, running: Future[None]) -> None:
         while True:
