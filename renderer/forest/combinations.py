@@ -66,7 +66,7 @@ COMBINATIONS = {
         "Traced shadows, fine",
         "The same, with finer steps of the eye's ray at the finest level: nearest to the reference.",
         {
-            "shadow": {"kind": "sun_march"},
+            "shadow": {"kind": "sun_march", "step": 0.75},
             "height_shading": NO_HEIGHT,
             "light": {"kind": "leaf"},
             "sky": SEEN,

@@ -55,7 +55,7 @@ float looked_visibility() {
     return sum.x / sum.y;
 }
 
-// What is lit, smoothed by a tent three pixels wide over what lies at about the same distance; its distance stays its own.
+// What is lit, smoothed over three by three pixels of what lies at about the same distance; its distance stays its own.
 vec4 smoothed(ivec2 pixel) {
     vec4 own = texelFetch(lit, pixel, 0);
     ivec2 last = ivec2(picture_size) - 1;
@@ -63,8 +63,7 @@ vec4 smoothed(ivec2 pixel) {
     for (int n = 0; n < 9; n++) {
         ivec2 step = ivec2(n % 3, n / 3) - 1;
         vec4 other = texelFetch(lit, clamp(pixel + step, ivec2(0), last), 0);
-        float tent = step.x * step.y != 0 ? 1.0 : step.x + step.y != 0 ? 2.0 : 4.0;
-        sum += other.a < 0.0 ? vec4(0.0) : tent * alike(own.a, other.a) * vec4(other.rgb, 1.0);
+        sum += other.a < 0.0 ? vec4(0.0) : alike(own.a, other.a) * vec4(other.rgb, 1.0);
     }
     return vec4(own.a < 0.0 ? vec3(0.0) : sum.rgb / sum.a, own.a);
 }
