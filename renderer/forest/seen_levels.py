@@ -12,10 +12,8 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
+from renderer.forest.pattern_mips import LEVELS
 from renderer.forest.seen_kernels import follow_light
-
-LEVELS = 5
-"""Coarser levels made, each of half the resolution along both sides."""
 
 ELEVATIONS = np.radians([20.0, 40.0, 65.0])
 """Of the rays that count. Between them a level's extinction changes by a tenth, and to the zenith by a quarter."""

@@ -9,8 +9,9 @@ import pytest
 
 from renderer.forest import seen_levels as module
 from renderer.forest.pattern import AXES
+from renderer.forest.pattern_mips import LEVELS
 from renderer.forest.seen_kernels import follow_light
-from renderer.forest.seen_levels import AZIMUTHS, ELEVATIONS, LEVELS, blocks, seen_levels
+from renderer.forest.seen_levels import AZIMUTHS, ELEVATIONS, blocks, seen_levels
 from renderer.forest.world_scale import VOXEL
 
 SHAPE = (32, 32, 32)
