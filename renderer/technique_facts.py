@@ -27,7 +27,7 @@ Lines = Sequence[Mapping[str, Any]]
 
 
 def measure(session: Session, scene: str, folder: Path, size: int, frames: int, tell: Tell | None = None) -> Path:
-    """Measure every technique of every slot at each preset against the full reference, and time it at the first.
+    """Measure every technique of every slot at each preset of no group against the full reference; time it at the first.
 
     Args:
         session: draws, bakes and caches.
@@ -41,7 +41,7 @@ def measure(session: Session, scene: str, folder: Path, size: int, frames: int, 
     Raises:
         InputError: a size that is not studied.
     """
-    presets = tuple(phenomenon(scene).presets)
+    presets = tuple(name for name, preset in phenomenon(scene).presets.items() if not preset.group)
     study = Study(session, Plan(scene, presets, size=size).checked())
     machine = provenance(session.gl.info.renderer)
     results = folder / "results.jsonl"
