@@ -27,7 +27,7 @@ Lines = Sequence[Mapping[str, Any]]
 
 
 def measure(session: Session, scene: str, folder: Path, size: int, frames: int, tell: Tell | None = None) -> Path:
-    """Measure every technique of every slot at each preset of no group against the full reference; time it at the first.
+    """Measure every technique of every slot at each preset without a group against the full reference, and its time.
 
     Args:
         session: draws, bakes and caches.
