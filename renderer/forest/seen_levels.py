@@ -13,9 +13,7 @@ from collections.abc import Callable, Mapping
 import numpy as np
 
 from renderer.forest.pattern_mips import LEVELS
-from renderer.forest.planting import RANKS
 from renderer.forest.seen_kernels import follow_light
-from renderer.forest.species_alone import owners
 
 ELEVATIONS = np.radians([20.0, 40.0, 65.0])
 """Of the rays that count. Between them a level's extinction changes by a tenth, and to the zenith by a quarter."""
@@ -38,60 +36,35 @@ def blocks(a: np.ndarray) -> np.ndarray:
 
 
 def seen_levels(
-    level: Mapping[str, np.ndarray],
-    axes: np.ndarray,
-    layer: float,
-    progress: Callable[[float], None],
-    ranks: int = RANKS,
+    level: Mapping[str, np.ndarray], axes: np.ndarray, layer: float, progress: Callable[[float], None]
 ) -> dict[str, np.ndarray]:
     """Levels 1 to LEVELS of what a view ray reads.
 
     Args:
         level: `colour` and `anchor` of the finest level, uint8 (K, J, I, 4).
         axes: (2, 2) sides of a voxel [m] along i and j. layer: thickness [m]. progress: told the share done.
-        ranks: of one species: a voxel has the light and the albedo of its tree's species, which may stand alone.
 
     Returns:
         `seen_1` to `seen_5` uint8 (K, J / 2^n, I / 2^n, 8): albedo as it is, opacity for one voxel of the FINEST level,
         and the anchor of the child that shows most, with the children's least safe distance.
     """
     opacity = np.minimum(level["colour"][..., 3].astype(np.float32) / np.float32(255), OPAQUE)
-    owner = owners(level["anchor"], ranks)
-    light, shown = _light_by_species(opacity, owner, axes, layer, progress)
+    light, shown = _light(opacity, axes, layer, progress)
     sine = np.sin(ELEVATIONS).astype(np.float32)[:, None, None, None]
     albedo = level["colour"][..., :3] / np.maximum(level["colour"][..., 3:], 1).astype(np.float32)
     anchor, made, rng = level["anchor"], {}, np.random.default_rng(1)
     for number in range(1, LEVELS + 1):
-        weights = blocks(shown.mean(axis=1).sum(axis=0))
-        species = blocks(owners(anchor, ranks))
+        weights = blocks(shown.mean(axis=0))
         anchor = _anchors(blocks(anchor), weights)
-        weights = weights * (species == owners(anchor, ranks)[..., None])
         share = weights / np.maximum(weights.sum(axis=-1, keepdims=True), np.float32(1e-12))
         albedo = (blocks(albedo) * share[..., None]).sum(axis=3)
-        light, shown = (
-            np.stack([[blocks(one).mean(axis=-1) for one in own] for own in each]) for each in (light, shown)
-        )
-        # Whichever species owns the block and stands, it stands for all the matter in it.
-        hidden = -np.expm1(-(shown / light).sum(axis=0) * sine).mean(axis=0)
+        light, shown = (np.stack([blocks(one).mean(axis=-1) for one in each]) for each in (light, shown))
+        hidden = -np.expm1(-shown / light * sine).mean(axis=0)
         # Rounded up as often as its remainder says: the least of these opacities still adds up over a long ray.
         hidden = np.floor(hidden * 255 + rng.random(hidden.shape)).astype(np.uint8)
         colour = np.rint(np.clip(albedo, 0, 1) * 255).astype(np.uint8)
         made[f"seen_{number}"] = np.concatenate([colour, hidden[..., None], anchor], axis=-1)
     return made
-
-
-def _light_by_species(
-    opacity: np.ndarray, owner: np.ndarray, axes: np.ndarray, layer: float, progress: Callable[[float], None]
-) -> tuple[np.ndarray, np.ndarray]:
-    """`_light` among the trees of each species by itself, both (species, E, K, J, I)."""
-    full = opacity > 0
-    kinds = np.unique(owner[full]) if full.any() else np.zeros(1, int)
-    found = []
-    for number, kind in enumerate(kinds):
-        own = opacity if len(kinds) == 1 else np.where(owner == kind, opacity, np.float32(0))
-        found.append(_light(own, axes, layer, lambda share, n=number: progress((n + share) / len(kinds))))  # type: ignore[misc]
-    light, shown = (np.stack(each) for each in zip(*found, strict=True))
-    return light, shown
 
 
 def _light(

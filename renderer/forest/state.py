@@ -14,8 +14,6 @@ from renderer.world.mesh import MeshReading
 from renderer.world.state import SceneState
 from renderer.world.terrain import TerrainReading
 
-Macros = tuple[tuple[str, int], ...]
-
 SLOTS = ("geometry", "shadow", "height_shading", "light", "sky", "filter")
 DEFAULTS = {
     "geometry": "ray_march",
@@ -123,15 +121,6 @@ class Cover(Model):
         ge=0,
         le=1e6,
     )
-    species_map: str = param(
-        "",
-        label="Species map",
-        help="An uploaded raster of whole numbers, as asset:HASH, stretched over the square: 1 where only broadleaf "
-        "stands, 2 conifer, 3 birch (of own trees, their numbers), 0 where all are mixed. The pixel at a tree's foot "
-        "counts. Baked horizons and transmittances hold for all species together, the sky's light for each alone.",
-        cost="bake",
-        pattern=r"^(asset:[0-9a-f]{64})?$",
-    )
     canopy_model: str = param(
         "",
         label="Canopy height model",
@@ -153,15 +142,11 @@ class Cover(Model):
         le=20,
     )
 
+
     @property
     def local_heights(self) -> bool:
         """Whether trees are taller at one place than at another."""
         return bool(self.canopy_model)
-
-    @property
-    def macros(self) -> Macros:
-        """What the programs are built for."""
-        return ("LOCAL_CANOPY", int(self.local_heights)), ("SPECIES_MAP", int(bool(self.species_map)))
 
 
 class Canopy(Model):
@@ -218,7 +203,9 @@ class Ground(Model):
     patches: float = param(
         0.2, label="Ground patches", help="How much the ground's brightness varies.", unit="ratio", ge=0, le=0.9
     )
-    map_seed: int = param(0, label="Map seed", help="Of the hash that lays the tiles.", cost="host", ge=0, le=2**31 - 1)
+    map_seed: int = param(
+        0, label="Map seed", help="Of the hash that lays the tiles.", cost="host", ge=0, le=2**31 - 1
+    )
 
 
 CHOSEN: dict[str, dict[str, Any]] = {

@@ -29,9 +29,6 @@ HALF = 32768 / 65535
 TILE_MAP = 256
 """Cells a side of the patch of tiles that is kept: 10 km, twice the square; farther out it comes round again."""
 
-NO_SPECIES = np.zeros((1, 1), np.uint8)
-"""The species map of a land without one."""
-
 ATLAS_WRAP: tuple[Wrap, Wrap, Wrap] = ("repeat", "repeat", "clamp")
 """The atlas comes round along its sides, and ends above and below."""
 
@@ -67,13 +64,12 @@ def stand_texture(presence: np.ndarray) -> np.ndarray:
 
 
 def ground_textures(gl: GL, ground: Arrays) -> dict[str, AnyTexture]:
-    """`heights`, `normals` (with the smooth cover), `cover`, `species` and `growth` from the `terrain` bake."""
+    """`heights`, `normals` (with the smooth cover), `cover` and `growth` from the `terrain` bake."""
     slope = normals(ground["elevation"], (CELL, CELL))[::-1]
     return {
         "heights": gl.texture2d(bilinear_cells(ground["elevation"])[0], filter="nearest"),
         "normals": gl.texture2d(np.concatenate([slope, ground["cover"][::-1, :, None]], axis=-1).astype(np.float16)),
         "cover": gl.texture2d(stand_texture(ground["presence"])),
-        "species": gl.texture2d(ground.get("species", NO_SPECIES)[::-1], filter="nearest"),
         "growth": gl.texture2d(np.ascontiguousarray(ground["growth"][::-1]), filter="linear"),
     }
 

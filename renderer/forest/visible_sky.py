@@ -15,8 +15,6 @@ import numpy as np
 
 from renderer.core.technique import Arrays, Bake
 from renderer.forest.ambient import directions
-from renderer.forest.planting import RANKS
-from renderer.forest.species_alone import each_alone, owners
 from renderer.forest.transmittance import extinction_of, transmittance
 from renderer.forest.world_scale import CELL
 from renderer.world.horizon_sweep import sweeps
@@ -42,22 +40,9 @@ def bake_canopy_sky(
 
     Returns:
         `seen` uint8 (K, J, I, 4), packed: the integrals over the upper hemisphere of the transmittance V / 2 pi and of
-        V w / pi, w the direction; 1 and (0, 0, 1) where nothing hides the sky. Under a species map, of the sky past
-        the voxel's own species.
+        V w / pi, w the direction; 1 and (0, 0, 1) where nothing hides the sky.
     """
-    pattern = inputs["pattern"]
-    extinction, voxel = extinction_of(np.asarray(pattern["colour_1"])[..., 3])
-    owner = owners(np.asarray(pattern["anchor_1"]), int(pattern.get("ranks", RANKS)))
-    words = "looking at the sky through the canopy"
-
-    def seen(own: np.ndarray, tell: Callable[[float], None]) -> np.ndarray:
-        return _sky_through(extinction * own, voxel, tell)
-
-    return {"seen": packed(each_alone(owner, extinction > 0, seen, lambda share: progress(share, words)))}
-
-
-def _sky_through(extinction: np.ndarray, voxel: float, progress: Callable[[float], None]) -> np.ndarray:
-    """Moments (K, J, I, 4) of the sky that each voxel sees, from the extinction (K, J, I) [1/m]."""
+    extinction, voxel = extinction_of(np.asarray(inputs["pattern"]["colour_1"])[..., 3])
     rays, shares = directions()
     seen = np.zeros((*extinction.shape, 4), np.float32)
 
@@ -69,8 +54,8 @@ def _sky_through(extinction: np.ndarray, voxel: float, progress: Callable[[float
         for number, through in enumerate(pool.map(one, range(len(rays)))):
             for channel, factor in enumerate((1.0, *(2 * rays[number]))):
                 seen[..., channel] += np.float32(shares[number] * factor) * through
-            progress(number / len(rays))
-    return seen
+            progress(number / len(rays), "looking at the sky through the canopy")
+    return {"seen": packed(seen)}
 
 
 def bake_land_sky(

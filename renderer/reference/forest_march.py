@@ -104,7 +104,7 @@ def _interval(scene, o, d, s, end, curve, layer, tau, limit, step, mode, own, pr
             t = middle - s0
             tk = (q0 + (q1 + q2 * t) * t) / (g0 + (g1 + g2 * t) * t) * layers - 0.5
             tu, tv = base_u + du * per * middle, base_v + dv * per * middle
-            alpha = alpha_at(scene, o[0] + d[0] * middle, o[1] + d[1] * middle, tu, tv, tk)
+            alpha = alpha_at(scene, tu, tv, tk)
             if alpha > 0.0 and _meets(scene, o, d, middle, tu, tv, tk, mode, own, presence):
                 sigma = extinction(scene, alpha)
                 tau += sigma * length

@@ -31,9 +31,6 @@ ANCHOR_STEPS = 16.0
 RANKS = 128
 """Steps in which a stand is thinned: the lowest seven bits of an anchor's last byte are its tree's rank."""
 
-BANDS = 4
-"""Species that a species map tells apart: each has as many of the ranks."""
-
 REACH = 127 / ANCHOR_STEPS
 """Longest stored offset from a voxel to its tree's foot along one axis, m."""
 
@@ -49,9 +46,6 @@ class ForestWorld:
         presence: (P, P) share of the trees that stand, 0..1, at the middles of P x P equal parts of the nodes' square
             (side N cells), bilinear between them: a tree stands where it exceeds its rank over RANKS at its foot;
             `cover` where it is left out.
-        species: (Q, Q) uint8, the number of the one species that stands there, from 1, or 0 where all do, constant over
-            Q x Q equal parts of the same square. With it, a tree's rank counts within the RANKS / BANDS of its species,
-            species 1's being the first; without it, all are one.
         growth: (N, N) height of the layer against `canopy_height` on the nodes, bilinear; 1 where it is left out.
         cell: distance between nodes, m.
         canopy_height, tile_side, voxel: height of the layer, side of the tiling's triangles, length for which alpha is
@@ -99,7 +93,6 @@ class ForestWorld:
     background: Callable[[Floats], Floats] | None = None
     patches: float = 0.0
     presence: NDArray[np.floating] | None = None
-    species: Bytes | None = None
     growth: NDArray[np.floating] | None = None
     leaf_transmission: Colour3 = (0.0, 0.0, 0.0)
     sky: NDArray[np.floating] | None = None
@@ -117,8 +110,6 @@ class ForestWorld:
             raise InputError("cover", f"has shape {self.cover.shape}", f"{shape} as the elevation")
         if self.presence is not None and (self.presence.ndim != 2 or len(set(self.presence.shape)) > 1):
             raise InputError("presence", f"has shape {self.presence.shape}", "a square")
-        if self.species is not None and (self.species.ndim != 2 or len(set(self.species.shape)) > 1):
-            raise InputError("species", f"has shape {self.species.shape}", "a square")
         if self.growth is not None and (self.growth.shape != shape or not self.growth.min() > 0):
             raise InputError("growth", f"has shape {self.growth.shape}", f"{shape} as the elevation, above 0")
         atlas = self.colour.shape
@@ -162,7 +153,6 @@ class Scene(NamedTuple):
     cover: Floats
     share: Floats
     share_cell: float
-    species: Bytes
     growth: Floats
     presence: Bytes
     block_top: Floats
@@ -211,9 +201,7 @@ def prepare(world: ForestWorld) -> Scene:
     sky_rows, sky_columns, sky_power = sky_table(sky)
     return Scene(
         elevation=z, slope_x=slope_x, slope_y=-slope_y, cover=cover, share=share, share_cell=share_cell,
-        species=np.zeros((0, 0), np.uint8) if world.species is None else np.ascontiguousarray(world.species),
-        growth=growth, block_top=_block_top(z),
-        presence=_presence(share, share_cell, len(z) - 1, world.cell, chosen=world.species is not None),
+        growth=growth, presence=_presence(share, share_cell, len(z) - 1, world.cell), block_top=_block_top(z),
         top=float(z.max()), layer_top=float(world.canopy_height * growth.max()), cell=float(world.cell),
         height=float(world.canopy_height),
         side=float(world.tile_side), voxel=float(world.voxel), colour=np.ascontiguousarray(world.colour),
@@ -238,11 +226,11 @@ def _block_top(z: Floats) -> Floats:
     return blocks
 
 
-def _presence(share: Floats, share_cell: float, cells: int, cell: float, chosen: bool) -> Bytes:
+def _presence(share: Floats, share_cell: float, cells: int, cell: float) -> Bytes:
     """For each cell, whether the trees that may reach into it all stand, none does, or each must be asked.
 
     A voxel names a foot at most `REACH` away along either axis; the share there lies between the extremes of the places
-    around it, because it is bilinear. Where the species are `chosen` by a map, each tree must be asked.
+    around it, because it is bilinear.
     """
     size = 2 * math.ceil((REACH + 0.5 * cell) / share_cell + 0.5) + 1
     low, high = (extreme(share, size, mode="nearest") for extreme in (ndimage.minimum_filter, ndimage.maximum_filter))
@@ -250,8 +238,7 @@ def _presence(share: Floats, share_cell: float, cells: int, cell: float, chosen:
     # within half a place of the cell's middle, which the window's own half place allows for
     at = np.clip(np.rint(middle / share_cell + 0.5 * (len(share) - 1)).astype(int), 0, len(share) - 1)
     some = np.where(high[np.ix_(at, at)] <= 0.0, NOWHERE, SOMEWHERE)
-    every = (low[np.ix_(at, at)] > (RANKS - 1) / RANKS) & (not chosen)
-    return np.where(every, EVERYWHERE, some).astype(np.uint8)
+    return np.where(low[np.ix_(at, at)] > (RANKS - 1) / RANKS, EVERYWHERE, some).astype(np.uint8)
 
 
 def _safe(alpha: Bytes) -> Bytes:

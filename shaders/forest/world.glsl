@@ -105,17 +105,10 @@ vec2 foot_of(vec2 xy, vec4 voxel) {
 }
 
 // Whether the tree that owns the voxel stands, 0 or 1, and how far off the next one may be [m]: its rank, of 128 in which the stand is
-// thinned, against the share that stands at its foot. Under a species map each species has a band of 32 ranks, and stands only where
-// the map's texel at its foot has its number or 0.
+// thinned, against the share that stands at its foot.
 vec2 stand_of(vec2 xy, vec4 voxel) {
-    vec2 foot = foot_of(xy, voxel);
-    vec2 found = cover_at(foot);
+    vec2 found = cover_at(foot_of(xy, voxel));
     float rank = mod(two_bytes(voxel.w).y, 128.0) / 128.0;
-#if SPECIES_MAP == 1
-    float wanted = floor(textureLod(species, terrain_coordinate(foot), 0.0).r * 255.0 + 0.5);
-    float own = floor(rank * 4.0) + 1.0;
-    rank = wanted == 0.0 || wanted == own ? fract(rank * 4.0) : 2.0;
-#endif
     return vec2(found.x > rank ? 1.0 : 0.0, found.y);
 }
 

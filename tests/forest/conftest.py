@@ -109,8 +109,7 @@ def _asked(
     try:
         return probe(gl, ["forest/world.glsl", *files], body, inputs, outputs, uniforms=given | dict(values or {}),
                      textures=held | made, declarations="\n".join([*text, declarations]),
-                     defines=program._limits((("LOCAL_CANOPY", int(local)),
-                                              ("SPECIES_MAP", int("species" in (terrain or ()))))))
+                     defines=program._limits(local))
     finally:
         for texture in made.values():
             texture.release()

@@ -25,9 +25,8 @@ ALL = [(slot, kind) for slot in SLOTS for kind in techniques("forest", slot)]
 SPARED: dict[str, Callable[[dict[str, str]], bool]] = {
     "sky_irradiance": lambda chosen: chosen["sky"] in {"constant", "visible_hemisphere"},
     "sun_elevation": lambda chosen: chosen["shadow"] == "none" or chosen["shadow"].endswith("shadow_map"),
-    # Trees are as tall everywhere, and of all species, unless a map says otherwise.
+    # Trees are as tall everywhere, unless a canopy height model says otherwise.
     "growth": lambda chosen: True,
-    "species": lambda chosen: True,
     "canopy_least": lambda chosen: chosen["geometry"] == "slices",
     "canopy_grade": lambda chosen: chosen["geometry"] == "slices",
     "pixel_angle": lambda chosen: chosen["filter"] == "none",
@@ -56,14 +55,11 @@ def test_what_is_declared_is_used(thread: GLThread, slot: str, kind: str) -> Non
 
 
 def test_an_idle_uniform_is_found(thread: GLThread) -> None:
-    assert thread.call(left_over, worlds.state(view={"background": "sky"}), "uniform float idle;") == [
-        "growth", "idle", "species"
-    ]
+    assert thread.call(left_over, worlds.state(view={"background": "sky"}), "uniform float idle;") == ["growth", "idle"]
 
 
-def test_local_heights_and_species_are_read(thread: GLThread) -> None:
-    maps = {"canopy_model": "asset:" + 64 * "0", "species_map": "asset:" + 64 * "0"}
-    state = worlds.state(view={"background": "sky"}, cover=maps)
+def test_local_heights_are_read(thread: GLThread) -> None:
+    state = worlds.state(view={"background": "sky"}, cover={"canopy_model": "asset:" + 64 * "0"})
     assert thread.call(left_over, state) == []
 
 

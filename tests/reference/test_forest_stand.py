@@ -46,25 +46,6 @@ def test_trees_of_a_rank_below_the_share_stand() -> None:
             assert (seen > 0) == (share > rank / RANKS)
 
 
-@pytest.mark.parametrize("species", [0, 1, 2, 4])
-def test_trees_of_the_species_at_their_foot_stand(species: int) -> None:
-    """One pixel of the map, 16 m wide, has a species; elsewhere stands species 3."""
-    there = np.full((16, 16), 3, np.uint8)
-    there[5, 9] = species  # its middle is 24 m east and 40 m north of the square's
-    world = flat(200, nodes=32, ground_albedo=(0.0, 0.0, 0.0), species=there)
-    for band, rank in ((0, 5), (1, 5), (2, 20), (3, 31)):
-        for foot in (0, 90):  # sixteenths of a metre to the east of a place 4 m inside the pixel's eastern edge
-            anchor = world.anchor.copy()
-            anchor[..., 0] = 128 + foot
-            anchor[..., 3] = 32 * band + rank
-            for share in (rank / 32, rank / 32 + 0.004):
-                shown = replace(world, anchor=anchor, presence=np.full((66, 66), share))
-                seen = render(shown, looking([[28, 40]]), CENTRE).radiance[0, 0, 0]
-                at = 3 if foot else species
-                assert (seen > 0) == (at in (0, band + 1) and share > rank / 32)
-
-
-
 def test_a_finer_share_lies_on_the_same_square() -> None:
     """Shares on the nodes and twice as fine, of a step to the east, agree away from the step."""
     step = np.repeat(np.arange(NODES)[None] > 20, NODES, axis=0).astype(float)
@@ -99,8 +80,7 @@ def test_cells_that_are_sure_of_their_trees_are_right() -> None:
 
 def test_arrays_that_do_not_fit_are_refused() -> None:
     for changes, field in (({"growth": np.ones((3, 3))}, "growth"), ({"growth": np.zeros((NODES, NODES))}, "growth"),
-                           ({"presence": np.ones((3, 4))}, "presence"),
-                           ({"species": np.ones((3, 4), np.uint8)}, "species")):
+                           ({"presence": np.ones((3, 4))}, "presence")):
         with pytest.raises(InputError) as refused:
             flat(10, nodes=NODES, **changes)
         assert refused.value.field == field
