@@ -5,7 +5,7 @@
 // V of the trees is taken as c + d.w with these integrals, so that the light is c and d times moments of L:
 //   sky_even L, sky_upward z L, sky_sunward s L, sky_upward2 z^2 L, sky_sunward2 s^2 L, sky_across2 t^2 L, sky_upward_sunward z s L,
 //   integrated over the upper hemisphere [W/m2].
-// Deviations: V is linear in the direction; the land takes from each moment what it takes of an even sky's; trees are the atlas' own
+// Deviations: V is linear in the direction; the land takes from each moment what it takes of an even sky's, but on open ground; trees are the atlas' own
 // neighbours, whatever the map has thinned. Seen from afar, where coarse voxels stand before the leaves, it is read in the air
 // in front of them and too bright.
 
@@ -27,6 +27,10 @@ Skylight sky_light(Spot spot) {
     vec3 upward = sky_upward * land.w;
     vec3 upward2 = sky_upward2 * (1.0 - hidden * sqrt(hidden));
     vec3 sunward = sky_sunward * land.x + 0.5 * open.x * sky_even;
+    // On open ground the land's own c + d.w tells which part of the sky it hides; in a stand the trees hide the low sky before it.
+    float high = 6.0 * (land.w - land.x);
+    vec3 hides = (4.0 * land.x - 3.0 * land.w) * sky_upward + high * sky_upward2 + 1.5 * open.x * sky_upward_sunward;
+    upward = mix(max(hides, 0.0), upward, spot.wooded);
     vec3 across = 0.5 * open.y * sky_even;
     vec3 aslant = sky_upward_sunward * land.w;
     vec3 whole = max(c * even + up * upward + level.x * sunward + level.y * across, 0.0);

@@ -104,6 +104,27 @@ def test_open_ground_takes_the_whole_sky(ask: Ask) -> None:
     assert found == pytest.approx(moments()["sky_upward"], rel=3e-3), "all that comes down"
 
 
+def ground_error(ask: Ask) -> float:
+    """Greatest relative error of what comes down on open ground, of which the land hides one side, against the sum."""
+    found = asked(ask, f"sky_on_ground(vec3(1.0), vec3(0.0, 0.0, 1.0), {SPOT})", (0, 0, 0, 0), TREES, 0.0)
+    exact = ((ANGLES * seen(TREES) * RAYS[:, 2])[:, None] * LIGHT).sum(axis=0)
+    return float(np.abs(found / exact - 1).max())
+
+
+def test_ground_knows_which_side_of_the_sky_the_land_hides(ask: Ask) -> None:
+    assert ground_error(ask) < 1e-3
+
+
+@pytest.mark.parametrize(("right", "wrong"), [
+    ("1.5 * open.x * sky_upward_sunward", "0.0 * sky_upward_sunward"),
+    ("high * sky_upward2", "0.0 * sky_upward2"),
+    ("mix(max(hides, 0.0), upward, spot.wooded)", "mix(upward, max(hides, 0.0), spot.wooded)"),
+])
+def test_ground_that_takes_its_share_of_an_even_sky_is_found(ask: Ask, spoil: Callable, right: str, wrong: str) -> None:
+    with spoil(FILE, right, wrong):
+        assert ground_error(ask) > 0.02
+
+
 @pytest.mark.parametrize("sine", [0.2, 0.6])
 def test_an_even_horizon_takes_what_lies_below_it(ask: Ask, sine: float) -> None:
     """Closed form: under an even sky, level ground behind a horizon of sine x all round gets 1 - x^2."""
