@@ -9,7 +9,7 @@
 
 const float NEVER = -1e9;
 
-// Coarser levels would fill most of the layer's height with one voxel, and hide the sun from the treetops.
+// In coarser levels a voxel is wider than a crown, and crowns and the light between them are one.
 const float COARSEST = 3.0;
 
 float first_sunward(vec2 line, float texel, float threshold) {

@@ -1,6 +1,6 @@
 // Pass of the Fourier opacity map: gathers the series of the extinction along one line of the sun's light. Jansen & Bavoil 2010, section 3.
 // Symbols: line coordinates across the light, along shadow_right and shadow_up [m]; texel its texel's width [m]; t way along it [m];
-// d place on the crossing, 0 where the light first meets matter, 1 on the ground; alpha opacity for one voxel of the level.
+// d place on the crossing, 0 where the light first meets matter, 1 on the ground; alpha opacity for one voxel's length.
 // a_0 = 2 tau, a_k = -2 sum ln(1 - alpha) cos(2 pi k d), b_k the same with the sine: the result is a_0, a_1, b_1, a_2, b_2 ..., four a
 // texture, after the crossing's four sunward coordinates [m]: first matter, where the light leaves the canopy again, where it comes
 // back to it for the last time, and the ground.
@@ -12,7 +12,7 @@
 
 const float NEVER = -1e9;
 
-// Coarser levels would fill most of the layer's height with one voxel.
+// In coarser levels a voxel is wider than a crown, and crowns and the light between them are one.
 const float COARSEST = 3.0;
 
 // Optical depth behind which the rest is dark, and does not count: less than a hundredth of the light; what is opaque would ring.
