@@ -14,6 +14,7 @@ from pydantic import Field
 import renderer
 from renderer.core.errors import InputError, UmbrageError
 from renderer.core.params import kind_of
+from renderer.core.quantity import Quantity
 from renderer.core.technique import Phenomenon, Technique
 
 SHADERS = Path(renderer.__file__).parent.parent / "shaders"
@@ -74,3 +75,21 @@ def phenomenon(name: str) -> Phenomenon:
     if name not in known:
         raise InputError("scene", "there is no such scene", ", ".join(known))
     return known[name]
+
+
+@functools.cache
+def quantities() -> dict[str, Quantity]:
+    """What phenomena let be measured, by name: each `renderer/<name>/quantities.py` with its `QUANTITIES`.
+
+    Raises:
+        UmbrageError: two of them give one name to different things.
+    """
+    found: dict[str, Quantity] = {}
+    for entry in sorted(Path(renderer.__file__).parent.iterdir()):
+        # The study's own module of that name collects these.
+        if entry.name != "study" and (entry / "quantities.py").is_file():
+            added = importlib.import_module(f"renderer.{entry.name}.quantities").QUANTITIES
+            if twice := found.keys() & added.keys():
+                raise UmbrageError(f"renderer.{entry.name}: {', '.join(sorted(twice))} can be measured already")
+            found |= added
+    return found

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -12,9 +12,8 @@ import numpy as np
 
 from renderer.core.errors import InputError
 from renderer.core.params import Model, validate
-from renderer.study import quantities
-
-Progress = Callable[[float, str], None]
+from renderer.core.quantity import Progress, Quantity
+from renderer.study.quantities import known
 
 
 @dataclass(frozen=True)
@@ -64,7 +63,7 @@ def _plain(values: np.ndarray) -> Any:
 
 def names() -> tuple[str, ...]:
     """The quantities that can be measured."""
-    return tuple(quantities.QUANTITIES)
+    return tuple(known())
 
 
 def describe(quantity: str) -> dict[str, Any]:
@@ -138,7 +137,8 @@ def _silent(share: float, words: str) -> None:
     """Progress that nobody listens to."""
 
 
-def _found(quantity: str) -> quantities.Quantity:
-    if quantity not in quantities.QUANTITIES:
-        raise InputError("quantity", "there is no such quantity", ", ".join(names()))
-    return quantities.QUANTITIES[quantity]
+def _found(quantity: str) -> Quantity:
+    found = known()
+    if quantity not in found:
+        raise InputError("quantity", "there is no such quantity", ", ".join(found))
+    return found[quantity]

@@ -4,16 +4,17 @@ from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import numpy as np
 from pydantic import Field
 
+from renderer.core import registry
 from renderer.core.errors import AssetError, InputError, LimitError
 from renderer.core.params import Model, param
+from renderer.core.quantity import InputFile, Progress, Quantity, Values
 from renderer.reference.horizon import horizon
 from renderer.study.sunlight import SunlightArguments, sunlight
 from renderer.world import sun as suns
@@ -24,48 +25,7 @@ from renderer.world.terrain import Terrain, default_terrain, load_terrain
 RAYS = 4_000_000
 """Most horizons asked for at once: some minutes on one core over a large grid."""
 
-Progress = Callable[[float, str], None]
 Index = Annotated[float, Field(ge=0, le=1e6)]
-
-
-@dataclass(frozen=True)
-class Values:
-    """Arrays by name, and what was assumed on the way, in words."""
-
-    arrays: Mapping[str, np.ndarray]
-    notes: tuple[str, ...] = ()
-
-
-@dataclass(frozen=True)
-class InputFile:
-    """A file that a quantity reads."""
-
-    name: str
-    help: str
-    required: bool = False
-
-
-@dataclass(frozen=True)
-class Quantity:
-    """One measurable quantity.
-
-    Attributes:
-        arguments: the declared arguments.
-        function: `(arguments, files by name, progress) -> Values`.
-        units: unit of each array.
-        technique, source: how it is found, and who published it.
-        error: estimated error of each array, in words with a unit.
-    """
-
-    title: str
-    help: str
-    arguments: type[Model]
-    function: Callable[[Any, Mapping[str, Path], Progress], Values]
-    units: Mapping[str, str]
-    technique: str
-    source: str
-    error: Mapping[str, str]
-    files: tuple[InputFile, ...] = field(default=())
 
 
 class HorizonArguments(Model):
@@ -206,7 +166,7 @@ def _sunlight(arguments: SunlightArguments, files: Mapping[str, Path], progress:
     return Values(*sunlight(arguments, files, progress))
 
 
-QUANTITIES: dict[str, Quantity] = {
+TRUNK: dict[str, Quantity] = {
     "horizon": Quantity(
         title="Horizon",
         help="Exact elevation angle and distance of the terrain's horizon, seen from points on it.",
@@ -275,3 +235,8 @@ QUANTITIES: dict[str, Quantity] = {
         ),
     ),
 }
+
+
+def known() -> dict[str, Quantity]:
+    """Every quantity by name: those of the trunk, and what each phenomenon adds."""
+    return {**TRUNK, **registry.quantities()}
