@@ -49,7 +49,7 @@ def test_says_what_it_is_and_whose(phenomenon: str, slot: str, kind: str) -> Non
 def test_glsl_belongs_to_a_technique(path: Path) -> None:
     """Its stem is a technique's kind, or that with the name of a pass: `depth_shadow_map_depth`."""
     phenomenon, slot = path.relative_to(SHADERS).parts[:2]
-    kinds = [kind for name, of, kind in TECHNIQUES if (name, of) == (phenomenon, slot)]
+    kinds = list(registry.techniques(phenomenon, slot))
     assert any(path.stem == kind or path.stem.startswith(f"{kind}_") for kind in kinds), kinds
 
 

@@ -1,0 +1,54 @@
+"""Mie's phase function of water droplets, tabulated."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, ClassVar, Literal
+
+import numpy as np
+
+from renderer.clouds.droplets import Distribution, Droplets
+from renderer.clouds.phase_tables import bake_droplets
+from renderer.clouds.technique import PhaseTechnique
+from renderer.core.params import bake_arguments, param
+from renderer.core.technique import Arrays, Bake
+
+
+class Mie(PhaseTechnique):
+    """Forward peak, fogbow and glory as the droplets' size makes them."""
+
+    title: ClassVar[str] = "Mie"
+    caption: ClassVar[str] = "The true phase function of water droplets, with forward peak, fogbow and glory."
+    paper: ClassVar[str] = "Mie 1908; Belcour 2009, sections 2.3.2 and 3.1"
+    textures: ClassVar[Mapping[str, str]] = {"table": "sampler2D"}
+
+    kind: Literal["mie"] = "mie"
+    radius: float = param(
+        Droplets.model_fields["radius"].default,
+        label="Droplet radius",
+        help="Mean radius of the droplets; the median of a lognormal distribution.",
+        unit="um",
+        cost="bake",
+        ge=1,
+        le=30,
+        source="Belcour 2009, figure 2.5 (errata 001-23)",
+    )
+    distribution: Distribution = param(
+        "normal", label="Distribution", help="How the number of droplets spreads over radii.", cost="bake"
+    )
+    width: float = param(
+        0.1, label="Width", help="Standard deviation of the radii over their mean.", unit="ratio", cost="bake",
+        ge=0.005, le=0.5,
+    )
+    sun_disc: bool = param(
+        True, label="Disc of the sun", help="Whether rings are blurred by the sun's own size.", cost="bake"
+    )
+
+    def phase_bake(self) -> Bake:
+        """Moments and tables of the droplets."""
+        arguments = {name: value for name, value in bake_arguments(self).items() if name != "kind"}
+        return Bake("phase", bake_droplets, arguments, seconds=8)
+
+    def kept_textures(self, state: Any, baked: Mapping[str, Arrays]) -> dict[str, np.ndarray]:
+        """`table` (2, TABLE, 3): the phase function, and below it its convolution with itself, 1/sr."""
+        return {"table": np.stack([baked["phase"]["value"], baked["phase"]["twice"]])}

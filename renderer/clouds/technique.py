@@ -1,0 +1,57 @@
+"""What a clouds technique adds to a technique: the bakes it needs, and the textures and numbers made of them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, ClassVar
+
+import numpy as np
+
+from renderer.core.technique import Arrays, Bake, Technique
+
+
+class CloudsTechnique(Technique):
+    """A technique of the clouds.
+
+    `textures` names its samplers, which `kept_textures` fills from what was baked, whatever camera and sun.
+    """
+
+    extra_declarations: ClassVar[tuple[str, ...]] = ()
+    """GLSL declarations of uniforms that are no live parameters: what `constants` gives."""
+
+    includes: ClassVar[tuple[str, ...]] = ()
+    """Shader files that its own needs before it, relative to the shader root."""
+
+    def bakes(self, state: Any) -> list[Bake]:
+        """The precomputations this technique needs; `state` names the other techniques by slot."""
+        return []
+
+    def kept_textures(self, state: Any, baked: Mapping[str, Arrays]) -> dict[str, np.ndarray]:
+        """Arrays (H, W[, C]) for its 2D samplers and (K, J, I[, C]) for its 3D ones, float32, read by linear
+        interpolation and clamped at their edges."""
+        return {}
+
+    def constants(self, state: Any, baked: Mapping[str, Arrays]) -> dict[str, Any]:
+        """Values of `extra_declarations`."""
+        return {}
+
+
+class PhaseTechnique(CloudsTechnique):
+    """How one droplet scatters. Whatever it is, its bake `phase` holds what scattering techniques need of it."""
+
+    extra_declarations: ClassVar[tuple[str, ...]] = (
+        "uniform vec3 phase_asymmetry; // mean cosine of the scattering angle",
+        "uniform vec3 phase_forward;   // share scattered by less than FORWARD_ANGLE",
+    )
+
+    def phase_bake(self) -> Bake:
+        """The bake `phase`: arrays as `renderer.clouds.phase_tables.phase_arrays` gives them."""
+        raise NotImplementedError
+
+    def bakes(self, state: Any) -> list[Bake]:
+        """The phase function's moments and tables."""
+        return [self.phase_bake()]
+
+    def constants(self, state: Any, baked: Mapping[str, Arrays]) -> dict[str, Any]:
+        """Asymmetry and share of the forward peak in each band."""
+        return {f"phase_{name}": tuple(float(v) for v in baked["phase"][name]) for name in ("asymmetry", "forward")}
