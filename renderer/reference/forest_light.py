@@ -71,7 +71,7 @@ def _canopy_light(scene, switches, x, y, to_eye, event, voxel, out):
     `voxel` holds what stands there afterwards; of an even sky nothing is hidden yet.
     """
     tu, tv, tk = event[TU], event[TV], event[TK]
-    voxel_at(scene, tu, tv, tk, voxel)
+    voxel_at(scene, x, y, tu, tv, tk, voxel)
     sun = (scene.sun[0], scene.sun[1], scene.sun[2])
     normal = (2.0 * voxel[4] - 1.0, 2.0 * voxel[5] - 1.0, 2.0 * voxel[6] - 1.0)
     reflected, passed, upwards = leaves(normal, to_eye, sun)
@@ -101,7 +101,7 @@ def _ground_light(scene, switches, x, y, z, step, quantum, chance, empty, share,
     ambient = 0.0 if switches[HEMISPHERE] else 1.0
     if not switches[HEMISPHERE] and bilinear(scene.cover, scene.cell, x, y) > 0.5:
         tu, tv = texel(scene, x, y)
-        voxel_at(scene, tu, tv, 0.0, voxel)
+        voxel_at(scene, x, y, tu, tv, 0.0, voxel)
         ambient = voxel[7]
     ambient *= 0.5 * (1.0 + nz)
     facing = max(nx * scene.sun[0] + ny * scene.sun[1] + nz * scene.sun[2], 0.0)

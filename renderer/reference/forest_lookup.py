@@ -10,7 +10,7 @@ import math
 
 from numba import njit
 
-from renderer.reference.forest_world import ANCHOR_STEPS, EVERYWHERE, NOWHERE, RANKS, TILES, Scene
+from renderer.reference.forest_world import ALONE, ANCHOR_STEPS, BANDS, NOWHERE, RANKS, SOMEWHERE, TILES, Scene
 
 MASK = 0xFFFFFFFF
 ALPHA_MAX = 1.0 - 2.0**-12
@@ -94,21 +94,57 @@ def _corners(scene: Scene, tu: float, tv: float, tk: float) -> tuple[int, int, i
 
 
 @njit(cache=True, nogil=True)
-def alpha_at(scene: Scene, tu: float, tv: float, tk: float) -> float:
-    """Opacity 0..1 of one voxel length, trilinear between texel centres."""
-    u, v, w = tu - math.floor(tu), tv - math.floor(tv), tk - math.floor(tk)
-    i0, i1, j0, j1, k0, k1 = _corners(scene, tu, tv, tk)
-    c = scene.colour
-    low = (c[k0, j0, i0, 3] * (1 - u) + c[k0, j0, i1, 3] * u) * (1 - v)
-    low += (c[k0, j1, i0, 3] * (1 - u) + c[k0, j1, i1, 3] * u) * v
-    high = (c[k1, j0, i0, 3] * (1 - u) + c[k1, j0, i1, 3] * u) * (1 - v)
-    high += (c[k1, j1, i0, 3] * (1 - u) + c[k1, j1, i1, 3] * u) * v
-    return (low * (1 - w) + high * w) / 255.0
+def _of_species(scene: Scene, x: float, y: float, i: int, j: int, k: int) -> bool:
+    """Whether the tree of texel (i, j, k) stands under a map of species, its foot told from a sample at (x, y).
+
+    Trees of other species stand inside one another's crowns: what is between texels must be asked of each of them.
+    """
+    foot_x = x + (scene.anchor[k, j, i, 0] - 128.0) / ANCHOR_STEPS
+    foot_y = y + (scene.anchor[k, j, i, 1] - 128.0) / ANCHOR_STEPS
+    count, each = scene.species.shape[0], RANKS // BANDS
+    part = len(scene.elevation) * scene.cell / count
+    row = min(max(math.floor(0.5 * count - foot_y / part), 0), count - 1)
+    column = min(max(math.floor(foot_x / part + 0.5 * count), 0), count - 1)
+    alone, rank = scene.species[row, column], scene.anchor[k, j, i, 3] % RANKS
+    if alone != 0 and rank // each != alone - 1:
+        return False
+    return bilinear(scene.share, scene.share_cell, foot_x, foot_y) > (rank % each) / each
 
 
 @njit(cache=True, nogil=True)
-def voxel_at(scene: Scene, tu: float, tv: float, tk: float, out) -> None:
-    """All that the atlas holds at a place, trilinear, 0..1: out[0:4] = `colour`, out[4:8] = `normal`."""
+def alpha_at(scene: Scene, presence: int, x: float, y: float, tu: float, tv: float, tk: float) -> float:
+    """Opacity 0..1 of one voxel length, trilinear between texel centres; under a map of species, of what stands."""
+    u, v, w = tu - math.floor(tu), tv - math.floor(tv), tk - math.floor(tk)
+    i0, i1, j0, j1, k0, k1 = _corners(scene, tu, tv, tk)
+    if presence == SOMEWHERE and scene.species.shape[0] > 0:
+        total = 0.0
+        for corner in range(8):
+            i, fu = (i1, u) if corner & 1 else (i0, 1 - u)
+            j, fv = (j1, v) if corner & 2 else (j0, 1 - v)
+            k, fw = (k1, w) if corner & 4 else (k0, 1 - w)
+            if scene.alpha[0, k, j, i] > 0 and _of_species(scene, x, y, i, j, k):
+                total += fu * fv * fw * scene.alpha[0, k, j, i]
+        return total / 255.0
+    c = scene.alpha[plane(presence)]
+    low = (c[k0, j0, i0] * (1 - u) + c[k0, j0, i1] * u) * (1 - v)
+    low += (c[k0, j1, i0] * (1 - u) + c[k0, j1, i1] * u) * v
+    high = (c[k1, j0, i0] * (1 - u) + c[k1, j0, i1] * u) * (1 - v)
+    high += (c[k1, j1, i0] * (1 - u) + c[k1, j1, i1] * u) * v
+    return (low * (1 - w) + high * w) / 255.0
+
+
+@njit(cache=True, nogil=True, inline="always")
+def plane(presence: int) -> int:
+    """Which of the scene's opacities a cell has: of all trees, or of the one species that stands there alone."""
+    return max(presence - ALONE + 1, 0)
+
+
+@njit(cache=True, nogil=True)
+def voxel_at(scene: Scene, x: float, y: float, tu: float, tv: float, tk: float, out) -> None:
+    """All that the atlas holds at a place, trilinear, 0..1: out[0:4] = `colour`, out[4:8] = `normal`.
+
+    Under a map of species, `colour` is of what stands, seen from a sample at (x, y); the ground has a `normal` anyway.
+    """
     u, v, w = tu - math.floor(tu), tv - math.floor(tv), tk - math.floor(tk)
     i0, i1, j0, j1, k0, k1 = _corners(scene, tu, tv, tk)
     out[:8] = 0.0
@@ -118,8 +154,10 @@ def voxel_at(scene: Scene, tu: float, tv: float, tk: float, out) -> None:
         k, fw = (k1, w) if corner & 4 else (k0, 1 - w)
         weight = fu * fv * fw / 255.0
         for c in range(4):
-            out[c] += weight * scene.colour[k, j, i, c]
             out[4 + c] += weight * scene.normal[k, j, i, c]
+        if scene.species.shape[0] == 0 or _of_species(scene, x, y, i, j, k):
+            for c in range(4):
+                out[c] += weight * scene.colour[k, j, i, c]
 
 
 @njit(cache=True, nogil=True)
@@ -144,10 +182,10 @@ def foot(scene: Scene, x: float, y: float, tu: float, tv: float, tk: float, cent
 @njit(cache=True, nogil=True)
 def stands(scene: Scene, presence: int, x: float, y: float, tu: float, tv: float, tk: float) -> bool:
     """Whether the tree that owns a sample exists: the share that stands at its foot exceeds its rank."""
-    if presence == EVERYWHERE:
-        return True
     if presence == NOWHERE:
         return False
+    if presence != SOMEWHERE or scene.species.shape[0] > 0:
+        return True  # under a map of species each texel was asked: see `alpha_at`
     foot_x, foot_y = foot(scene, x, y, tu, tv, tk, False)
     size, layers = scene.anchor.shape[2], scene.anchor.shape[0]
     k = min(max(math.floor(tk + 0.5), 0), layers - 1)

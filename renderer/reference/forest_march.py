@@ -11,7 +11,7 @@ import math
 
 from numba import njit
 
-from renderer.reference.forest_lookup import alpha_at, extinction, foot, lattice, rhombus, stands
+from renderer.reference.forest_lookup import alpha_at, extinction, foot, lattice, plane, rhombus, stands
 from renderer.reference.forest_world import BLOCK, NOWHERE, TILES
 
 LEFT, GROUND, OPAQUE, FULL = 0, 1, 2, 3
@@ -69,7 +69,7 @@ def _interval(scene, o, d, s, end, curve, layer, tau, limit, step, mode, own, pr
     s0, q0, q1, q2 = curve
     g0, g1, g2, least = layer
     layers, size = scene.colour.shape[0], scene.colour.shape[2]
-    per = size / TILES
+    per, which = size / TILES, plane(presence)
     u0, v0 = lattice(scene, o[0], o[1])
     du, dv = lattice(scene, d[0], d[1])
     # h = q / g with h in [0, 1]: |h'| <= (|q'| + |g'|) / g
@@ -93,7 +93,7 @@ def _interval(scene, o, d, s, end, curve, layer, tau, limit, step, mode, own, pr
             tk = (q0 + (q1 + q2 * t) * t) / (g0 + (g1 + g2 * t) * t) * layers - 0.5
             tu, tv = base_u + du * per * s, base_v + dv * per * s
             k = min(max(math.floor(tk), -1), layers - 1)
-            clear = scene.safe[k + 1, math.floor(tv) % size, math.floor(tu) % size]
+            clear = scene.safe[which, k + 1, math.floor(tv) % size, math.floor(tu) % size]
             if clear >= 2:
                 # moving less than clear - 1 texels along every axis cannot reach a cell with any opacity
                 # within this triangle; the next one is cut from another part of the atlas
@@ -104,7 +104,7 @@ def _interval(scene, o, d, s, end, curve, layer, tau, limit, step, mode, own, pr
             t = middle - s0
             tk = (q0 + (q1 + q2 * t) * t) / (g0 + (g1 + g2 * t) * t) * layers - 0.5
             tu, tv = base_u + du * per * middle, base_v + dv * per * middle
-            alpha = alpha_at(scene, tu, tv, tk)
+            alpha = alpha_at(scene, presence, o[0] + d[0] * middle, o[1] + d[1] * middle, tu, tv, tk)
             if alpha > 0.0 and _meets(scene, o, d, middle, tu, tv, tk, mode, own, presence):
                 sigma = extinction(scene, alpha)
                 tau += sigma * length

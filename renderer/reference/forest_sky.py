@@ -97,7 +97,7 @@ def sky_on_canopy(scene, o, d, record, light, n, total_even, limit, step, quantu
         ray, power = _drawn(scene, seed, pixel, sample, before + k)
         x, y, z = o[0] + d[0] * record[e, S], o[1] + d[1] * record[e, S], o[2] + d[2] * record[e, S]
         tu, tv, tk = record[e, TU], record[e, TV], record[e, TK]
-        voxel_at(scene, tu, tv, tk, voxel)
+        voxel_at(scene, x, y, tu, tv, tk, voxel)
         normal = (2.0 * voxel[4] - 1.0, 2.0 * voxel[5] - 1.0, 2.0 * voxel[6] - 1.0)
         reflected, let, _ = leaves(normal, to_eye, ray)
         foot_x, foot_y = foot(scene, x, y, tu, tv, tk, False)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,6 +31,9 @@ ANCHOR_STEPS = 16.0
 RANKS = 128
 """Steps in which a stand is thinned: the lowest seven bits of an anchor's last byte are its tree's rank."""
 
+BANDS = 4
+"""Species that a species map tells apart: each has as many of the ranks."""
+
 REACH = 127 / ANCHOR_STEPS
 """Longest stored offset from a voxel to its tree's foot along one axis, m."""
 
@@ -46,6 +49,9 @@ class ForestWorld:
         presence: (P, P) share of the trees that stand, 0..1, at the middles of P x P equal parts of the nodes' square
             (side N cells), bilinear between them: a tree stands where it exceeds its rank over RANKS at its foot;
             `cover` where it is left out.
+        species: (Q, Q) uint8, the number of the one species that stands there, from 1, or 0 where all do, constant over
+            Q x Q equal parts of the same square. With it, a tree's rank counts within the RANKS / BANDS of its species,
+            species 1's being the first; without it, all are one.
         growth: (N, N) height of the layer against `canopy_height` on the nodes, bilinear; 1 where it is left out.
         cell: distance between nodes, m.
         canopy_height, tile_side, voxel: height of the layer, side of the tiling's triangles, length for which alpha is
@@ -93,6 +99,7 @@ class ForestWorld:
     background: Callable[[Floats], Floats] | None = None
     patches: float = 0.0
     presence: NDArray[np.floating] | None = None
+    species: Bytes | None = None
     growth: NDArray[np.floating] | None = None
     leaf_transmission: Colour3 = (0.0, 0.0, 0.0)
     sky: NDArray[np.floating] | None = None
@@ -110,6 +117,8 @@ class ForestWorld:
             raise InputError("cover", f"has shape {self.cover.shape}", f"{shape} as the elevation")
         if self.presence is not None and (self.presence.ndim != 2 or len(set(self.presence.shape)) > 1):
             raise InputError("presence", f"has shape {self.presence.shape}", "a square")
+        if self.species is not None and (self.species.ndim != 2 or len(set(self.species.shape)) > 1):
+            raise InputError("species", f"has shape {self.species.shape}", "a square")
         if self.growth is not None and (self.growth.shape != shape or not self.growth.min() > 0):
             raise InputError("growth", f"has shape {self.growth.shape}", f"{shape} as the elevation, above 0")
         atlas = self.colour.shape
@@ -131,7 +140,6 @@ class ForestWorld:
         if not math.isclose(sum(c * c for c in self.sun), 1.0, abs_tol=1e-6):
             raise InputError("sun", "must be a unit vector")
 
-
     def _check_sky(self) -> None:
         """Refuse a sky that is no table, or whose light is another than the irradiance told beside it."""
         if self.sky is None:
@@ -145,7 +153,8 @@ class ForestWorld:
 
 
 class Scene(NamedTuple):
-    """What the compiled functions read: `ForestWorld` in float64, and the bounds derived from it."""
+    """What the compiled functions read: `ForestWorld` in float64, and the bounds derived from it; `alpha` and `safe` of
+    all trees and, under a map of species, of each band of ranks by itself."""
 
     elevation: Floats
     slope_x: Floats
@@ -153,6 +162,7 @@ class Scene(NamedTuple):
     cover: Floats
     share: Floats
     share_cell: float
+    species: Bytes
     growth: Floats
     presence: Bytes
     block_top: Floats
@@ -165,6 +175,7 @@ class Scene(NamedTuple):
     colour: Bytes
     normal: Bytes
     anchor: Bytes
+    alpha: Bytes
     safe: Bytes
     tile: Bytes
     seed: int
@@ -183,8 +194,9 @@ class Scene(NamedTuple):
     fade: float
 
 
-NOWHERE, EVERYWHERE, SOMEWHERE = 0, 1, 2
-"""Presence of trees over a cell: no anchor that a voxel there can name is covered, all are, or each must be asked."""
+NOWHERE, EVERYWHERE, SOMEWHERE, ALONE = 0, 1, 2, 3
+"""Presence of trees over a cell: no anchor that a voxel there can name is covered, all are, or each must be asked; from
+ALONE on, all of one species and no others, species 1's being ALONE."""
 
 
 def prepare(world: ForestWorld) -> Scene:
@@ -199,14 +211,18 @@ def prepare(world: ForestWorld) -> Scene:
     even = np.broadcast_to(np.array(world.e_sky) / math.pi, (1, 1, 3))
     sky = np.ascontiguousarray(even if world.sky is None else world.sky, np.float64)
     sky_rows, sky_columns, sky_power = sky_table(sky)
+    alpha = _alphas(world)
     return Scene(
         elevation=z, slope_x=slope_x, slope_y=-slope_y, cover=cover, share=share, share_cell=share_cell,
-        growth=growth, presence=_presence(share, share_cell, len(z) - 1, world.cell), block_top=_block_top(z),
+        species=np.zeros((0, 0), np.uint8) if world.species is None else np.ascontiguousarray(world.species),
+        growth=growth, block_top=_block_top(z),
+        presence=_presence(share, share_cell, len(z) - 1, world.cell, world.species),
         top=float(z.max()), layer_top=float(world.canopy_height * growth.max()), cell=float(world.cell),
         height=float(world.canopy_height),
         side=float(world.tile_side), voxel=float(world.voxel), colour=np.ascontiguousarray(world.colour),
         normal=np.ascontiguousarray(world.normal), anchor=np.ascontiguousarray(world.anchor),
-        safe=_safe(world.colour[..., 3]), tile=np.ascontiguousarray(world.tile, np.uint8), seed=int(world.seed),
+        alpha=alpha, safe=np.stack([_safe(each) for each in alpha]),
+        tile=np.ascontiguousarray(world.tile, np.uint8), seed=int(world.seed),
         tint=float(world.tint_strength), patches=float(world.patches), ground=np.array(world.ground_albedo, np.float64),
         leaf_transmission=np.array(world.leaf_transmission, np.float64),
         e_sun=np.array(world.e_sun, np.float64), e_sky=np.array(world.e_sky, np.float64),
@@ -226,19 +242,41 @@ def _block_top(z: Floats) -> Floats:
     return blocks
 
 
-def _presence(share: Floats, share_cell: float, cells: int, cell: float) -> Bytes:
+def _presence(share: Floats, share_cell: float, cells: int, cell: float, species: Bytes | None) -> Bytes:
     """For each cell, whether the trees that may reach into it all stand, none does, or each must be asked.
 
     A voxel names a foot at most `REACH` away along either axis; the share there lies between the extremes of the places
-    around it, because it is bilinear.
+    around it, because it is bilinear. Under a map of species all of one may stand and no others.
     """
-    size = 2 * math.ceil((REACH + 0.5 * cell) / share_cell + 0.5) + 1
-    low, high = (extreme(share, size, mode="nearest") for extreme in (ndimage.minimum_filter, ndimage.maximum_filter))
+    low, high = _extremes(share, share_cell, cells, cell)
+    result = np.where(high <= 0.0, NOWHERE, SOMEWHERE)
+    ranks = RANKS if species is None else RANKS // BANDS
+    full = low > (ranks - 1) / ranks
+    if species is None:
+        return np.where(full, EVERYWHERE, result).astype(np.uint8)
+    first, last = _extremes(species, share_cell * len(share) / len(species), cells, cell)
+    alike = np.where(first == 0, EVERYWHERE, ALONE - 1 + first)
+    return np.where(full & (first == last), alike, result).astype(np.uint8)
+
+
+def _extremes(places: NDArray[Any], place: float, cells: int, cell: float) -> tuple[NDArray[Any], NDArray[Any]]:
+    """Least and greatest of what lies at P x P places, `place` [m] apart, within reach of each of the cells."""
+    size = 2 * math.ceil((REACH + 0.5 * cell) / place + 0.5) + 1
     middle = (np.arange(cells) - 0.5 * (cells - 1)) * cell
     # within half a place of the cell's middle, which the window's own half place allows for
-    at = np.clip(np.rint(middle / share_cell + 0.5 * (len(share) - 1)).astype(int), 0, len(share) - 1)
-    some = np.where(high[np.ix_(at, at)] <= 0.0, NOWHERE, SOMEWHERE)
-    return np.where(low[np.ix_(at, at)] > (RANKS - 1) / RANKS, EVERYWHERE, some).astype(np.uint8)
+    at = np.clip(np.rint(middle / place + 0.5 * (len(places) - 1)).astype(int), 0, len(places) - 1)
+    filters = ndimage.minimum_filter, ndimage.maximum_filter
+    low, high = (extreme(places, size, mode="nearest")[np.ix_(at, at)] for extreme in filters)
+    return low, high
+
+
+def _alphas(world: ForestWorld) -> Bytes:
+    """Opacity of all trees (1, K, J, I), and of each band of ranks by itself (1 + BANDS, K, J, I) under a map."""
+    alpha = world.colour[..., 3]
+    if world.species is None:
+        return np.ascontiguousarray(alpha[None])
+    band = world.anchor[..., 3] % RANKS // (RANKS // BANDS)
+    return np.stack([alpha, *(np.where(band == one, alpha, np.uint8(0)) for one in range(BANDS))])
 
 
 def _safe(alpha: Bytes) -> Bytes:

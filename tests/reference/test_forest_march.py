@@ -11,7 +11,7 @@ from renderer.reference import forest_lookup as lookup
 from renderer.reference.forest import Options, render
 from renderer.reference.forest_light import visibility
 from renderer.reference.forest_march import ALL, COLUMNS, NONE, NOT_OWN, ONLY_OWN, march
-from renderer.reference.forest_world import prepare
+from renderer.reference.forest_world import EVERYWHERE, prepare
 from tests.reference.worlds import CENTRE, flat, grove, looking, unit
 
 NOWHERE = np.empty((0, COLUMNS))
@@ -58,9 +58,9 @@ def test_atlas_lookup_is_trilinear_and_wraps() -> None:
             at = [int(np.floor(t)) + o for t, o in zip((tu, tv, tk), (i, j, k), strict=True)]
             weight = np.prod([1 - abs(t - a) for t, a in zip((tu, tv, tk), at, strict=True)])
             expected += weight * scene.colour[np.clip(at[2], 0, 4), at[1] % 8, at[0] % 8, 3] / 255
-        assert lookup.alpha_at(scene, tu, tv, tk) == pytest.approx(expected)
+        assert lookup.alpha_at(scene, EVERYWHERE, 0.0, 0.0, tu, tv, tk) == pytest.approx(expected)
         voxel = np.empty(8)
-        lookup.voxel_at(scene, tu, tv, tk, voxel)
+        lookup.voxel_at(scene, 0.0, 0.0, tu, tv, tk, voxel)
         assert voxel[3] == pytest.approx(expected)
         assert voxel[4:6] == pytest.approx([128 / 255] * 2)
 
@@ -148,7 +148,7 @@ def test_own_tree_and_other_trees_multiply_to_all() -> None:
         z = lookup.bilinear(scene.elevation, 8.0, x, y) + 8.0
         tu, tv = lookup.texel(scene, x, y)
         tk = 0.4 * 32 - 0.5
-        if lookup.alpha_at(scene, tu, tv, tk) == 0:
+        if lookup.alpha_at(scene, EVERYWHERE, 0.0, 0.0, tu, tv, tk) == 0:
             continue
         own = lookup.foot(scene, x, y, tu, tv, tk, True)
         v = {

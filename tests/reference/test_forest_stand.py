@@ -10,7 +10,7 @@ import pytest
 from renderer.core.errors import InputError
 from renderer.reference.forest import render
 from renderer.reference.forest_march import ALL, COLUMNS, march
-from renderer.reference.forest_world import EVERYWHERE, NOWHERE, RANKS, prepare
+from renderer.reference.forest_world import ALONE, EVERYWHERE, NOWHERE, RANKS, SOMEWHERE, Scene, prepare
 from tests.reference.worlds import CENTRE, flat, grove, looking, unit
 
 ALPHA = 12
@@ -46,6 +46,24 @@ def test_trees_of_a_rank_below_the_share_stand() -> None:
             assert (seen > 0) == (share > rank / RANKS)
 
 
+@pytest.mark.parametrize("species", [0, 1, 2, 4])
+def test_trees_of_the_species_at_their_foot_stand(species: int) -> None:
+    """One pixel of the map, 16 m wide, has a species; elsewhere stands species 3."""
+    there = np.full((16, 16), 3, np.uint8)
+    there[5, 9] = species  # its middle is 24 m east and 40 m north of the square's
+    world = flat(200, nodes=32, ground_albedo=(0.0, 0.0, 0.0), species=there)
+    for band, rank in ((0, 5), (1, 5), (2, 20), (3, 31)):
+        for foot in (0, 90):  # sixteenths of a metre to the east of a place 4 m inside the pixel's eastern edge
+            anchor = world.anchor.copy()
+            anchor[..., 0] = 128 + foot
+            anchor[..., 3] = 32 * band + rank
+            for share in (rank / 32, rank / 32 + 0.004):
+                shown = replace(world, anchor=anchor, presence=np.full((66, 66), share))
+                seen = render(shown, looking([[28, 40]]), CENTRE).radiance[0, 0, 0]
+                at = 3 if foot else species
+                assert (seen > 0) == (at in (0, band + 1) and share > rank / 32)
+
+
 def test_a_finer_share_lies_on_the_same_square() -> None:
     """Shares on the nodes and twice as fine, of a step to the east, agree away from the step."""
     step = np.repeat(np.arange(NODES)[None] > 20, NODES, axis=0).astype(float)
@@ -78,9 +96,32 @@ def test_cells_that_are_sure_of_their_trees_are_right() -> None:
     assert 0.1 < np.mean(np.array(met) > 0) < 0.9
 
 
+def test_cells_of_one_species_are_right() -> None:
+    """Likewise under a map: the trees that stand alone are found without asking, in an atlas that mixes them."""
+    rng = np.random.default_rng(3)
+    quarters = np.kron(np.array([[1, 2], [3, 0]], np.uint8), np.ones((4, 4), np.uint8))
+    world = grove(trees=8, presence=np.ones((66, 66)), species=quarters)
+    anchor = world.anchor.copy()
+    anchor[..., 3] = rng.integers(0, RANKS, anchor.shape[1:3])
+    scene = prepare(replace(world, anchor=anchor))
+    assert {int(kind) for kind in np.unique(scene.presence)} == {EVERYWHERE, SOMEWHERE, ALONE, ALONE + 1, ALONE + 2}
+
+    def depths(given: Scene) -> list[float]:
+        nothing, d = np.empty((0, COLUMNS)), tuple(unit((0.03, 0.02, -0.4)))
+        return [march(given, (x, y, 50.0), d, 0.0, 0.0, 9.0, 0.2, True, ALL, (0.0, 0.0), nothing)[2]
+                for x, y in np.random.default_rng(4).uniform(-120, 120, (300, 2))]
+
+    asked = depths(scene._replace(presence=np.full_like(scene.presence, SOMEWHERE)))
+    # the steps begin where the last skip ended, and skips past what does not stand are longer
+    assert np.mean(np.abs(np.subtract(depths(scene), asked))) < 0.02 * np.mean(asked)
+    mistaken = np.where(scene.presence == ALONE, ALONE + 1, scene.presence)
+    assert np.mean(np.abs(np.subtract(depths(scene._replace(presence=mistaken)), asked))) > 0.1 * np.mean(asked)
+
+
 def test_arrays_that_do_not_fit_are_refused() -> None:
     for changes, field in (({"growth": np.ones((3, 3))}, "growth"), ({"growth": np.zeros((NODES, NODES))}, "growth"),
-                           ({"presence": np.ones((3, 4))}, "presence")):
+                           ({"presence": np.ones((3, 4))}, "presence"),
+                           ({"species": np.ones((3, 4), np.uint8)}, "species")):
         with pytest.raises(InputError) as refused:
             flat(10, nodes=NODES, **changes)
         assert refused.value.field == field
