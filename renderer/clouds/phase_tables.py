@@ -43,10 +43,10 @@ def table_place(cosines: np.ndarray, count: int = TABLE) -> np.ndarray:
 
 
 def look_up(table: np.ndarray, cosines: np.ndarray) -> np.ndarray:
-    """A table (TABLE, ..) at cosines (N,), linearly between entries: the twin of the shaders' fetch."""
+    """A table (TABLE, ..) at cosines of any shape, linearly between entries: the twin of the shaders' fetch."""
     place = table_place(np.asarray(cosines, np.float64), len(table))
     low = np.minimum(place.astype(int), len(table) - 2)
-    share = (place - low).reshape(-1, *[1] * (table.ndim - 1))
+    share = (place - low).reshape(place.shape + (1,) * (table.ndim - 1))
     return table[low] * (1 - share) + table[low + 1] * share
 
 
@@ -58,14 +58,16 @@ def phase_arrays(moments: np.ndarray, sun_radius: float = 0.0) -> dict[str, np.n
         sun_radius: of the sun's disc, over which the tables are averaged, rad; 0 for a point.
 
     Returns:
-        `moments` (3, L) without the sun's disc; `value` and `twice` (TABLE, 3), the phase function and its convolution
-        with itself, 1/sr; `asymmetry` (3,) and `forward` (3,), the share within FORWARD_ANGLE.
+        `moments` (3, L) without the sun's disc; `disc` (L,), the disc's own; `value` and `twice` (TABLE, 3), the
+        phase function and its convolution with itself, 1/sr; `asymmetry` (3,) and `forward` (3,), the share within
+        FORWARD_ANGLE.
     """
     kept = max(int(np.flatnonzero(np.abs(moments).max(axis=0) > NEGLIGIBLE).max()) + 1, 2)
     moments = moments[:, :kept]
     cosines, disc = table_cosines(), disc_moments(kept, sun_radius)
     return {
         "moments": moments,
+        "disc": disc,
         "value": np.stack([values_of(band * disc, cosines) for band in moments], axis=1).astype(np.float32),
         "twice": np.stack([values_of(band**2 * disc, cosines) for band in moments], axis=1).astype(np.float32),
         "asymmetry": moments[:, 1],

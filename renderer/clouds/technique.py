@@ -7,6 +7,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from renderer.clouds.slab import SlabModel
 from renderer.core.technique import Arrays, Bake, Technique
 
 
@@ -55,3 +56,14 @@ class PhaseTechnique(CloudsTechnique):
     def constants(self, state: Any, baked: Mapping[str, Arrays]) -> dict[str, Any]:
         """Asymmetry and share of the forward peak in each band."""
         return {f"phase_{name}": tuple(float(v) for v in baked["phase"][name]) for name in ("asymmetry", "forward")}
+
+
+class ScatteringTechnique(CloudsTechnique):
+    """What a plane layer makes of a beam of light. Its bakes have the phase function's as their input."""
+
+    conserves: ClassVar[bool] = True
+    """Whether it claims that what is not reflected is let through."""
+
+    def model(self, baked: Mapping[str, Arrays]) -> SlabModel:
+        """What its GLSL computes, in float64; `baked` holds its bakes' arrays and `phase`, by name."""
+        raise NotImplementedError

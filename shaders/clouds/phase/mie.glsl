@@ -3,13 +3,14 @@
 // Deviations: read from a table whose steps shrink towards both ends, as the fourth root of 1 - |cosine|.
 // Does not know: polarisation; droplets that are not round.
 
+#include "clouds/angles.glsl"
+
 const float PHASE_ENTRIES = 2048.0;
 
 // Row 0 of the table is P, row 1 is P convolved with itself.
 vec3 phase_tabulated(float cosine, float row) {
-    float near = 0.5 * sqrt(sqrt(max(1.0 - abs(cosine), 0.0)));
-    float place = cosine > 0.0 ? near : 1.0 - near;
-    return textureLod(phase_table, vec2((place * (PHASE_ENTRIES - 1.0) + 0.5) / PHASE_ENTRIES, 0.25 + 0.5 * row), 0.0).rgb;
+    float column = (angle_place(cosine) * (PHASE_ENTRIES - 1.0) + 0.5) / PHASE_ENTRIES;
+    return textureLod(phase_table, vec2(column, 0.25 + 0.5 * row), 0.0).rgb;
 }
 
 vec3 phase_value(float cosine) {
