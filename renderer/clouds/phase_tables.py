@@ -58,9 +58,9 @@ def phase_arrays(moments: np.ndarray, sun_radius: float = 0.0) -> dict[str, np.n
         sun_radius: of the sun's disc, over which the tables are averaged, rad; 0 for a point.
 
     Returns:
-        `moments` (3, L) without the sun's disc; `disc` (L,), the disc's own; `value` and `twice` (TABLE, 3), the
-        phase function and its convolution with itself, 1/sr; `asymmetry` (3,) and `forward` (3,), the share within
-        FORWARD_ANGLE.
+        `moments` (3, L) without the sun's disc; `disc` (L,), the disc's own; `value` and `twice` (TABLE, 3), the phase
+        function and its convolution with itself, 1/sr; `asymmetry` (3,); `forward` (3,), the share within
+        FORWARD_ANGLE, and `spread` (3,), the mean square angle of that share, rad^2.
     """
     kept = max(int(np.flatnonzero(np.abs(moments).max(axis=0) > NEGLIGIBLE).max()) + 1, 2)
     moments = moments[:, :kept]
@@ -72,7 +72,15 @@ def phase_arrays(moments: np.ndarray, sun_radius: float = 0.0) -> dict[str, np.n
         "twice": np.stack([values_of(band**2 * disc, cosines) for band in moments], axis=1).astype(np.float32),
         "asymmetry": moments[:, 1],
         "forward": np.array([share_within(band, FORWARD_ANGLE) for band in moments]),
+        "spread": np.array([_peak_spread(band) for band in moments]),
     }
+
+
+def _peak_spread(moments: np.ndarray) -> float:
+    """Mean square angle of what is scattered by less than FORWARD_ANGLE, rad^2."""
+    angles = np.linspace(0, FORWARD_ANGLE, 400)
+    weight = values_of(moments, np.cos(angles)) * np.sin(angles)
+    return float((weight * angles**2).sum() / weight.sum())
 
 
 def bake_droplets(arguments: dict[str, Any], inputs: dict[str, Arrays], progress: Progress) -> Arrays:

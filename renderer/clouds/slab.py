@@ -61,6 +61,9 @@ class SlabModel(Protocol):
     def diffuse_reflectance(self, depth: np.ndarray) -> np.ndarray:
         """Share (.., 3) of even light from all sides that the layer sends back."""
 
+    def direct(self, depth: np.ndarray, mu: np.ndarray) -> np.ndarray:
+        """Share (..) of a beam that passes unscattered."""
+
 
 def direct(depth: np.ndarray, mu: np.ndarray) -> np.ndarray:
     """Share of a beam that passes unscattered."""

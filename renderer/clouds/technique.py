@@ -43,6 +43,7 @@ class PhaseTechnique(CloudsTechnique):
     extra_declarations: ClassVar[tuple[str, ...]] = (
         "uniform vec3 phase_asymmetry; // mean cosine of the scattering angle",
         "uniform vec3 phase_forward;   // share scattered by less than FORWARD_ANGLE",
+        "uniform vec3 phase_spread;    // rad^2, mean square angle of that share",
     )
 
     def phase_bake(self) -> Bake:
@@ -54,8 +55,9 @@ class PhaseTechnique(CloudsTechnique):
         return [self.phase_bake()]
 
     def constants(self, state: Any, baked: Mapping[str, Arrays]) -> dict[str, Any]:
-        """Asymmetry and share of the forward peak in each band."""
-        return {f"phase_{name}": tuple(float(v) for v in baked["phase"][name]) for name in ("asymmetry", "forward")}
+        """Asymmetry, share and spread of the forward peak in each band."""
+        names = ("asymmetry", "forward", "spread")
+        return {f"phase_{name}": tuple(float(value) for value in baked["phase"][name]) for name in names}
 
 
 class ScatteringTechnique(CloudsTechnique):

@@ -82,3 +82,33 @@ vec2 slab_place(float tau, float mu) {
 vec3 slab_place(Slab s) {
     return vec3(slab_place(1.0, s.mu_view).x, slab_place(s.optical_depth, s.mu_sun));
 }
+
+// Radiance of light that has forgotten where it came from, over its flux: Eddington's law.
+float slab_exit(float mu_view) {
+    return (2.0 + 3.0 * mu_view) / SLAB_FOUR_PI;
+}
+
+// A Gaussian around the sun: `times` deflections whose mean square is `spread` [rad^2] each. 2 (1 - cosine) is the angle's square.
+vec3 slab_glow(float cosine, vec3 spread, vec3 times) {
+    vec3 width = spread * times;
+    return exp(-min(2.0 * (1.0 - cosine) / width, vec3(SLAB_DEEPEST))) / (0.25 * SLAB_FOUR_PI * width);
+}
+
+// Chance of three events or more where m are expected.
+vec3 slab_three_or_more(vec3 m) {
+    vec3 few = min(m, vec3(0.3));
+    vec3 series = few * few * few / 6.0 * (1.0 - few * (0.75 - few * (0.3 - few / 12.0)));
+    return mix(1.0 - exp(-m) * (1.0 + m + 0.5 * m * m), series, vec3(lessThan(m, vec3(0.3))));
+}
+
+// Share of a beam that meets a droplet.
+float slab_met(float tau, float mu) {
+    float x = tau / max(mu, SLAB_GRAZING);
+    return x * slab_mean_decay(vec3(x)).x;
+}
+
+// Place of one of the four stacked tables of fluxes (order 1 up, down, order 2 up, down): their rows never mix.
+vec2 slab_flux_place(float number, float tau, float mu) {
+    vec2 place = slab_place(tau, mu);
+    return vec2(place.x, (place.y + number) * 0.25);
+}

@@ -40,4 +40,4 @@ class HenyeyGreenstein(PhaseTechnique):
         with np.errstate(under="ignore"):
             moments = self.asymmetry ** np.arange(MOMENTS, dtype=np.float64)
         return Bake("phase", bake_moments, {"moments": moments[(moments > 1e-12) | (np.arange(MOMENTS) < 2)].tolist()},
-                    seconds=0.5)
+                    version=3, seconds=0.5)

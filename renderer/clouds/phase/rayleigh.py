@@ -20,4 +20,4 @@ class Rayleigh(PhaseTechnique):
 
     def phase_bake(self) -> Bake:
         """Three moments are all it has."""
-        return Bake("phase", bake_moments, {"moments": [1.0, 0.0, 0.1]}, seconds=0.2)
+        return Bake("phase", bake_moments, {"moments": [1.0, 0.0, 0.1]}, version=3, seconds=0.2)
