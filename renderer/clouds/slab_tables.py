@@ -13,7 +13,7 @@ import numpy as np
 
 from renderer.clouds.doubling import Streams
 from renderer.clouds.legendre import values_of
-from renderer.clouds.phase_tables import table_cosines
+from renderer.clouds.phase_tables import TABLE, table_cosines
 from renderer.clouds.slab_axes import cosines, depths
 from renderer.core.technique import Arrays
 
@@ -25,14 +25,14 @@ NODES = 16
 ORDERS = 9
 """Azimuthal orders of the light of orders 2 and more."""
 
-GLOW_PATHS = 33
+GLOW_PATHS = 21
 """Optical paths in the table of the glow: even steps of the logarithm between GLOW_LEAST and GLOW_MOST."""
 
 GLOW_LEAST, GLOW_MOST = -4.0, 6.0
 """Powers of two."""
 
-GLOW_ANGLES = 512
-"""Angles of that table, of the forward hemisphere alone."""
+GLOW_ANGLES = TABLE // 2
+"""Angles of that table: those of the phase function's in the forward hemisphere."""
 
 
 def second_share(depth: np.ndarray, view: np.ndarray, sun: np.ndarray) -> np.ndarray:
@@ -56,11 +56,11 @@ def bake_doubling(arguments: dict[str, Any], inputs: dict[str, Arrays], progress
     """Bake what `adding_doubling` reads.
 
     Returns:
-        `up`, `down` (T, K, K, 3): order 0 of azimuth in each band over `second_share` or `down_share`, by optical
-        depth, cosine of the sun, cosine of the view. `up_turns`, `down_turns` (2, T, K, K, 4): orders 1 to 8, mean of
-        the bands. `flux` (T, K, 3): hemispherical reflectance over that of the simplest layer, `plain_reflectance`.
-        `even` (T, 3): the same for even light. `peak` (3,). `rest` (TABLE, 3), `glow` (GLOW_PATHS, GLOW_ANGLES, 3):
-        see `_glow`.
+        `mean` (2, T, K, K, 3): order 0 of azimuth in each band of the light that leaves on the sunlit side and on the
+        other, over `second_share` and `down_share`, by optical depth, cosine of the sun, cosine of the view. `low`,
+        `high` (2, T, K, K, 4): orders 1 to 4 and 5 to 8, mean of the bands. `flux` (T, K, 3): hemispherical reflectance
+        over that of the simplest layer, `plain_reflectance`; `even` (T, 3): the same for even light. `peak` (3,).
+        `glow` (GLOW_PATHS, GLOW_ANGLES, 3): see `_glow`.
     """
     moments = inputs["phase"]["moments"]
     mu, tau = cosines(), depths()
@@ -75,19 +75,17 @@ def bake_doubling(arguments: dict[str, Any], inputs: dict[str, Arrays], progress
         streams.append(Streams(band, mu, NODES, ORDERS))
         found.append(_band(streams[-1], tau))
     deep = tau[:, None, None]
-    share = {"up": second_share(deep, mu, mu[:, None]), "down": down_share(deep, mu, mu[:, None])}
-    arrays: dict[str, np.ndarray] = {}
-    for side, scale in share.items():
-        # From (T, M, view, sun) to (T, sun, view, M).
-        turned = np.stack([np.moveaxis(one[side], (1, 2, 3), (3, 2, 1)) for one in found]) / scale[..., None]
-        arrays[side] = np.moveaxis(turned[..., 0], 0, -1) / (2 * np.pi)
-        turns = turned.mean(axis=0)[..., 1:] / np.pi
-        arrays[f"{side}_turns"] = np.stack([turns[..., :4], turns[..., 4:]])
+    share = np.stack([second_share(deep, mu, mu[:, None]), down_share(deep, mu, mu[:, None])])
+    # From (band, side, T, M, view, sun) to (band, side, T, sun, view, M).
+    turned = np.moveaxis(np.stack([one["leaving"] for one in found]), (3, 4, 5), (5, 4, 3)) / share[..., None]
+    turns = turned.mean(axis=0)[..., 1:] / np.pi
+    arrays = {"mean": np.moveaxis(turned[..., 0], 0, -1) / (2 * np.pi), "low": turns[..., :4], "high": turns[..., 4:]}
     arrays["flux"] = np.stack([one["flux"] for one in found], axis=-1) / plain_reflectance(tau[:, None], mu)[..., None]
     even = np.stack([one["even"] for one in found], axis=-1)
     arrays["even"] = even / even_plain(tau)[:, None]
     arrays["peak"] = np.array([one.peak for one in streams])
-    return {**{name: np.asarray(a, np.float32) for name, a in arrays.items()}, **_glow(inputs["phase"], arrays["peak"])}
+    arrays["glow"] = _glow(inputs["phase"], arrays["peak"])
+    return {name: np.asarray(array, np.float32) for name, array in arrays.items()}
 
 
 def plain_reflectance(depth: np.ndarray, mu: np.ndarray) -> np.ndarray:
@@ -108,35 +106,39 @@ def _band(streams: Streams, tau: np.ndarray) -> dict[str, np.ndarray]:
     node = slice(0, streams.wanted.start)
     weight = (streams.weight * streams.mu)[node]
     return {
-        "up": np.stack([(a.reflection - b.reflection)[wanted] for a, b in zip(layers, once)]),
-        "down": np.stack([(a.transmission - b.transmission)[wanted] for a, b in zip(layers, once)]),
+        "leaving": np.stack([
+            [(a.reflection - b.reflection)[wanted] for a, b in zip(layers, once)],
+            [(a.transmission - b.transmission)[wanted] for a, b in zip(layers, once)],
+        ]),
         "flux": np.stack([streams.hemispherical(layer.reflection) for layer in layers]),
         # Even light of radiance 1 / pi: the mean over its directions, weighted by their cosine.
         "even": np.array([2 * weight @ layer.reflection[0][node, node] @ streams.weight[node] for layer in layers]),
     }
 
 
-def _glow(phase: Arrays, peak: np.ndarray) -> dict[str, np.ndarray]:
-    """Two deflections and more by the forward peak alone, and what the peak leaves of the phase function.
+def _glow(phase: Arrays, peak: np.ndarray) -> np.ndarray:
+    """How light around the sun differs from order 1 of the scaled layer with the true phase function, as a factor.
 
-    The peak is what delta-M takes out: moments f up to its cut, those of the phase function beyond. Along a path of
-    optical depth t the spectrum of n deflections and more is Poisson's (formulas a3).
+    The peak p is what delta-M takes out: moments f up to its cut, those of the phase function beyond. Along a path of optical
+    depth t, order 1 is P t e^(-t); what the peak leaves of P goes through the scaled layer, (P - f p) t (e^(-(1 - f) t) - e^-t);
+    and n deflections by the peak alone, two and more, are Poisson's: the spectrum e^-t (e^(f p_l t) - 1 - f p_l t) (formulas
+    a3). Their sum is divided by P t e^(-(1 - f) t). Behind the sun's hemisphere it is 1.
 
     Returns:
-        `rest` (TABLE, 3), 1/sr; `glow` (GLOW_PATHS, GLOW_ANGLES, 3), 1/sr, over its energy e^(-t) (e^(f t) - 1 - f t).
+        (GLOW_PATHS, GLOW_ANGLES, 3).
     """
     moments = phase["moments"]
-    degrees = np.arange(moments.shape[1])
-    kept = np.where(degrees < 2 * NODES, peak[:, None], moments)
-    angles = table_cosines(2 * GLOW_ANGLES)[:GLOW_ANGLES]
-    glow = np.zeros((GLOW_PATHS, GLOW_ANGLES, 3))
-    rest = np.stack([values_of(band, table_cosines()) for band in moments - kept], axis=1)
-    for row, path in enumerate(glow_paths()):
-        for band, (share, f) in enumerate(zip(kept, peak)):
-            if f > 0:
-                spectrum = twice_or_more(share * path) / twice_or_more(f * path)
-                glow[row, :, band] = values_of(spectrum * phase["disc"], angles)
-    return {"rest": rest.astype(np.float32), "glow": np.maximum(glow, 0).astype(np.float32)}
+    kept = np.where(np.arange(moments.shape[1]) < 2 * NODES, peak[:, None], moments)
+    cosines_ahead = table_cosines()[:GLOW_ANGLES]
+    factor = np.ones((GLOW_PATHS, GLOW_ANGLES, 3))
+    for band, (share, f) in enumerate(zip(kept, peak)):
+        once = np.maximum(values_of(moments[band] * phase["disc"], cosines_ahead), 1e-9)
+        rest = values_of((moments[band] - share) * phase["disc"], cosines_ahead)
+        for row, t in enumerate(glow_paths()):
+            # Over t e^(-(1 - f) t) all three terms are of moderate size.
+            alone = values_of(np.exp(-f * t) / t * twice_or_more(share * t) * phase["disc"], cosines_ahead)
+            factor[row, :, band] = np.exp(-f * t) + (rest * -np.expm1(-f * t) + alone) / once
+    return np.maximum(factor, 0)
 
 
 def twice_or_more(x: np.ndarray | float) -> np.ndarray:

@@ -25,8 +25,8 @@ class AddingDoubling(ScatteringTechnique):
     caption: ClassVar[str] = "All orders of scattering by the true phase function, computed once and tabulated."
     paper: ClassVar[str] = "van de Hulst 1963; Hansen 1971; Wiscombe 1977; Nakajima & Tanaka 1988"
     textures: ClassVar[Mapping[str, str]] = {
-        **{f"{side}_{part}": "sampler3D" for side in ("up", "down") for part in ("mean", "low", "high")},
-        **dict.fromkeys(("flux", "even", "rest", "glow"), "sampler2D"),
+        **dict.fromkeys(("mean", "low", "high"), "sampler3D"),
+        **dict.fromkeys(("flux", "even", "glow"), "sampler2D"),
     }
     extra_declarations: ClassVar[tuple[str, ...]] = ("uniform vec3 scattering_peak; // share of the forward peak",)
 
@@ -40,16 +40,14 @@ class AddingDoubling(ScatteringTechnique):
 
     def bakes(self, state: Any) -> list[Bake]:
         """The tables of the phase function."""
-        return [Bake("doubling", tables.bake_doubling, {}, (state.phase.phase_bake(),), seconds=1)]
+        return [Bake("doubling", tables.bake_doubling, {}, (state.phase.phase_bake(),), version=2, seconds=1)]
 
     def kept_textures(self, state: Any, baked: Mapping[str, Arrays]) -> dict[str, np.ndarray]:
-        """Volumes by optical depth, sun and view; pictures by optical depth and sun, or by angle."""
+        """Volumes by optical depth (the two sides one above the other), sun and view; pictures by optical depth and sun, or
+        by path and angle."""
         found = baked["doubling"]
-        made = {"flux": found["flux"], "even": found["even"][None], "rest": found["rest"][None], "glow": found["glow"]}
-        for side in ("up", "down"):
-            made[f"{side}_mean"] = found[side]
-            made[f"{side}_low"], made[f"{side}_high"] = found[f"{side}_turns"]
-        return made
+        volumes = {name: np.concatenate(list(found[name])) for name in ("mean", "low", "high")}
+        return {**volumes, "flux": found["flux"], "even": found["even"][None], "glow": found["glow"]}
 
     def constants(self, state: Any, baked: Mapping[str, Arrays]) -> dict[str, Any]:
         """Share of the peak in each band."""
@@ -70,20 +68,16 @@ class DoublingModel:
 
     def up(self, slab: Slab) -> np.ndarray:
         """See `SlabModel.up`."""
-        kept = 1 - self._peak
-        scaled = np.stack([first_up(slab, share) / share for share in kept], axis=-1)
+        scaled = np.stack([first_up(slab, share) / share for share in 1 - self._peak], axis=-1)
         share = tables.second_share(slab.optical_depth, slab.mu_view, slab.mu_sun)
-        return self._more(slab, "up") * share[..., None] + look_up(self._phase["value"], slab.cosine) * scaled
+        return self._more(slab, 0) * share[..., None] + look_up(self._phase["value"], slab.cosine) * scaled
 
     def down(self, slab: Slab) -> np.ndarray:
         """See `SlabModel.down`."""
-        kept = 1 - self._peak
-        once = first_down(slab)[..., None]
-        scaled = np.stack([first_down(slab, share) / share for share in kept], axis=-1)
+        scaled = np.stack([first_down(slab, share) / share for share in 1 - self._peak], axis=-1)
         share = tables.down_share(slab.optical_depth, slab.mu_view, slab.mu_sun)
-        rest = look_up(self._tables["rest"], slab.cosine) * (scaled - once)
-        single = look_up(self._phase["value"], slab.cosine) * once
-        return np.maximum(self._more(slab, "down") * share[..., None] + rest + single + self._glow(slab), 0)
+        around = look_up(self._phase["value"], slab.cosine) * scaled * self._glow(slab)
+        return self._more(slab, 1) * share[..., None] + around
 
     def reflectance(self, depth: np.ndarray, mu: np.ndarray) -> np.ndarray:
         """See `SlabModel.reflectance`."""
@@ -102,21 +96,19 @@ class DoublingModel:
 
     direct = staticmethod(direct)
 
-    def _more(self, slab: Slab, side: str) -> np.ndarray:
+    def _more(self, slab: Slab, side: int) -> np.ndarray:
         """Light of two orders and more, over its share of thin layers and grazing directions."""
         places = (axes.depth_place(slab.optical_depth), axes.cosine_place(slab.mu_sun), axes.cosine_place(slab.mu_view))
         turns = np.cos(np.arange(1, 9) * np.arccos(np.clip(slab.cos_azimuth, -1, 1))[..., None])
-        low, high = (axes.look_up(table, *places) for table in self._tables[f"{side}_turns"])
+        low, high = (axes.look_up(self._tables[name][side], *places) for name in ("low", "high"))
         turned = (low * turns[..., :4]).sum(axis=-1) + (high * turns[..., 4:]).sum(axis=-1)
-        return np.maximum(axes.look_up(self._tables[side], *places) + turned[..., None], 0)
+        return np.maximum(axes.look_up(self._tables["mean"][side], *places) + turned[..., None], 0)
 
     def _glow(self, slab: Slab) -> np.ndarray:
-        """Two deflections and more by the peak alone."""
+        """What the forward peak makes of order 1 around the sun, a factor."""
         path = slab.optical_depth / np.sqrt(slab.mu_sun * slab.mu_view)
         step = (tables.GLOW_PATHS - 1) / (tables.GLOW_MOST - tables.GLOW_LEAST)
         row = np.clip((np.log2(np.maximum(path, 1e-6)) - tables.GLOW_LEAST) * step, 0, tables.GLOW_PATHS - 1)
-        column = np.minimum(table_place(slab.cosine, 2 * tables.GLOW_ANGLES), tables.GLOW_ANGLES - 1)
+        column = np.minimum(table_place(slab.cosine), tables.GLOW_ANGLES - 1)
         shape = axes.look_up(self._tables["glow"], row, column)
-        path = np.minimum(path, 80.0)[..., None]
-        energy = np.exp(-path) * tables.twice_or_more(self._peak * path)
-        return np.where(slab.cosine[..., None] > 0, shape * energy, 0.0)
+        return np.where(slab.cosine[..., None] > 0, shape, 1.0)

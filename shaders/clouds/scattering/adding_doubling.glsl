@@ -2,17 +2,18 @@
 // Nakajima & Tanaka 1988; glow of the forward peak: formulas a3.
 // Symbols: f peak scattering_peak [-], taken out of the phase function P [1/sr]; tau' = (1 - f) tau; the azimuthal orders of light
 // of two orders and more are stored over a share that carries thin layers and grazing directions.
-// Deviations: on the sunlit side order 1 of the scaled layer has the true P; on the other side order 1 is that of the true layer,
-// the rest of P goes through the scaled one, and two deflections and more by the peak alone are a glow of their own.
+// Deviations: order 1 of the scaled layer has the true P; around the sun, on the other side, a factor makes of it order 1 of the true
+// layer, what the peak leaves of P in the scaled one, and the glow of two deflections and more by the peak.
 // Does not claim: glory and fogbow blurred by the peak; the glow's skewness at grazing view.
 
 #include "clouds/angles.glsl"
 #include "clouds/slab.glsl"
 
 const float SCATTERING_GLOW_LEAST = -4.0;
-const float SCATTERING_GLOW_STEP = 3.2; // entries for each doubling of the path
-const vec2 SCATTERING_GLOW_SIZE = vec2(512.0, 33.0);
-const float SCATTERING_ENTRIES = 2048.0;
+const float SCATTERING_GLOW_STEP = 2.0; // entries for each doubling of the path
+const float SCATTERING_GLOW_PATHS = 21.0;
+const float SCATTERING_ENTRIES = 2048.0; // angles from 0 to 180 degrees; the glow has the first half of them
+const float SCATTERING_FORWARD = 0.9961946980917455; // cosine of 5 degrees
 
 // How light of two orders and more goes with a thin layer and with grazing directions.
 float scattering_share(Slab s) {
@@ -48,50 +49,41 @@ vec3 scattering_diffuse_reflectance(float tau) {
     return textureLod(scattering_even, vec2(slab_place(tau, 1.0).y, 0.5), 0.0).rgb * (tau / (tau + 7.0));
 }
 
-vec3 scattering_up(Slab given) {
-    Slab s = slab_safe(given);
-    vec3 kept = 1.0 - scattering_peak;
-    vec3 once = slab_first_up(s, vec3(1.0));
-    vec3 scaled = slab_first_up(s, kept) / kept;
-    vec3 place = slab_place(s);
-    vec4 low, high;
-    scattering_turns(s.cos_azimuth, low, high);
-    float turned = dot(textureLod(scattering_up_low, place, 0.0), low) + dot(textureLod(scattering_up_high, place, 0.0), high);
-    vec3 more = max(textureLod(scattering_up_mean, place, 0.0).rgb + turned, 0.0) * scattering_share(s);
-    vec3 P = phase_value(s.cosine);
-    if (scattering_order == scattering_order_single) return P * once;
-    if (scattering_order == scattering_order_forward) return vec3(0.0);
-    return more + P * (scattering_order == scattering_order_all ? scaled : scaled - once);
-}
-
-// Two deflections and more by the forward peak alone, along the ray.
-vec3 scattering_glow_around(Slab s) {
+// What the forward peak makes of order 1 around the sun.
+vec3 scattering_glow_factor(Slab s) {
     float path = s.optical_depth * inversesqrt(s.mu_sun * s.mu_view);
-    float row = clamp((log2(max(path, 1e-6)) - SCATTERING_GLOW_LEAST) * SCATTERING_GLOW_STEP, 0.0, SCATTERING_GLOW_SIZE.y - 1.0);
-    float column = angle_place(s.cosine) * (2.0 * SCATTERING_GLOW_SIZE.x - 1.0);
-    vec3 shape = textureLod(scattering_glow, (vec2(min(column, SCATTERING_GLOW_SIZE.x - 1.0), row) + 0.5) / SCATTERING_GLOW_SIZE,
-                            0.0).rgb;
-    vec3 met = scattering_peak * path;
-    vec3 energy = exp(-min(path, SLAB_DEEPEST) * (1.0 - scattering_peak)) - exp(-min(path, SLAB_DEEPEST)) * (1.0 + met);
-    return s.cosine > 0.0 ? shape * max(energy, 0.0) : vec3(0.0);
+    float row = clamp((log2(max(path, 1e-6)) - SCATTERING_GLOW_LEAST) * SCATTERING_GLOW_STEP, 0.0, SCATTERING_GLOW_PATHS - 1.0);
+    float columns = 0.5 * SCATTERING_ENTRIES;
+    float column = min(angle_place(s.cosine) * (SCATTERING_ENTRIES - 1.0), columns - 1.0);
+    vec2 place = vec2((column + 0.5) / columns, (row + 0.5) / SCATTERING_GLOW_PATHS);
+    return s.cosine > 0.0 ? textureLod(scattering_glow, place, 0.0).rgb : vec3(1.0);
 }
 
-vec3 scattering_down(Slab given) {
+// Light that leaves on the sunlit side (up) or on the other, with one look at each table for both.
+vec3 scattering_leaving(Slab given, bool up) {
     Slab s = slab_safe(given);
     vec3 kept = 1.0 - scattering_peak;
-    vec3 once = slab_first_down(s, vec3(1.0));
-    vec3 scaled = slab_first_down(s, kept) / kept;
+    vec3 scaled = (up ? slab_first_up(s, kept) : slab_first_down(s, kept)) / kept;
     vec3 place = slab_place(s);
+    place.z = 0.5 * (up ? place.z : place.z + 1.0);
     vec4 low, high;
     scattering_turns(s.cos_azimuth, low, high);
-    float turned = dot(textureLod(scattering_down_low, place, 0.0), low) + dot(textureLod(scattering_down_high, place, 0.0), high);
-    vec3 more = max(textureLod(scattering_down_mean, place, 0.0).rgb + turned, 0.0) * scattering_share(s)
-        / (1.0 + 0.1 * s.optical_depth);
-    float column = (angle_place(s.cosine) * (SCATTERING_ENTRIES - 1.0) + 0.5) / SCATTERING_ENTRIES;
-    vec3 rest = textureLod(scattering_rest, vec2(column, 0.5), 0.0).rgb * (scaled - once);
-    vec3 single = phase_value(s.cosine) * once;
-    vec3 glow = scattering_glow_around(s);
+    float turned = dot(textureLod(scattering_low, place, 0.0), low) + dot(textureLod(scattering_high, place, 0.0), high);
+    float share = scattering_share(s) / (up ? 1.0 : 1.0 + 0.1 * s.optical_depth);
+    vec3 more = max(textureLod(scattering_mean, place, 0.0).rgb + turned, 0.0) * share;
+    vec3 P = phase_value(s.cosine);
+    vec3 bright = P * scaled * (up ? vec3(1.0) : scattering_glow_factor(s));
+    if (scattering_order == scattering_order_all) return more + bright;
+    vec3 single = P * (up ? slab_first_up(s, vec3(1.0)) : slab_first_down(s, vec3(1.0)));
+    vec3 forward = !up && s.cosine > SCATTERING_FORWARD ? bright - single : vec3(0.0);
     if (scattering_order == scattering_order_single) return single;
-    if (scattering_order == scattering_order_forward) return glow;
-    return max(more + rest + (scattering_order == scattering_order_all ? single + glow : vec3(0.0)), 0.0);
+    return scattering_order == scattering_order_forward ? forward : more + bright - single - forward;
+}
+
+vec3 scattering_up(Slab s) {
+    return scattering_leaving(s, true);
+}
+
+vec3 scattering_down(Slab s) {
+    return scattering_leaving(s, false);
 }

@@ -41,3 +41,8 @@ vec3 scattering_down(Slab given) {
     vec3 rest = max(scattering_transmittance(s.optical_depth, s.mu_sun) - slab_direct(s.optical_depth, s.mu_sun) - once, 0.0);
     return phase_value(s.cosine) * slab_first_down(s, vec3(1.0)) + rest * s.mu_sun * slab_exit(s.mu_view);
 }
+
+// Light that leaves on the sunlit side (up) or on the other.
+vec3 scattering_leaving(Slab s, bool up) {
+    return up ? scattering_up(s) : scattering_down(s);
+}

@@ -69,3 +69,8 @@ vec3 scattering_down(Slab given) {
     return scattering_chosen(around, phase_value(s.cosine) * slab_first_down(s, vec3(1.0)),
                              phase_twice(s.cosine) * slab_second_down(s), max(left, 0.0) * s.mu_sun * slab_exit(s.mu_view));
 }
+
+// Light that leaves on the sunlit side (up) or on the other.
+vec3 scattering_leaving(Slab s, bool up) {
+    return up ? scattering_up(s) : scattering_down(s);
+}

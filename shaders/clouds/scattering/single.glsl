@@ -31,3 +31,8 @@ vec3 scattering_down(Slab given) {
     Slab s = slab_safe(given);
     return phase_value(s.cosine) * slab_first_down(s, vec3(1.0));
 }
+
+// Light that leaves on the sunlit side (up) or on the other.
+vec3 scattering_leaving(Slab s, bool up) {
+    return up ? scattering_up(s) : scattering_down(s);
+}

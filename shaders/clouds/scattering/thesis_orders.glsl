@@ -58,3 +58,8 @@ vec3 scattering_down(Slab given) {
     return scattering_chosen(peak * slab_glow(s.cosine, phase_spread, vec3(1.0)), phase_value(s.cosine) * once,
                              phase_twice(s.cosine) * once, rest);
 }
+
+// Light that leaves on the sunlit side (up) or on the other.
+vec3 scattering_leaving(Slab s, bool up) {
+    return up ? scattering_up(s) : scattering_down(s);
+}

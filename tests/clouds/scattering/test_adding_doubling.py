@@ -34,12 +34,12 @@ def test_fluxes_are_their_twins(ask: Ask, baked: Baked, technique: AddingDoublin
 
 
 @pytest.mark.parametrize(("up", "right", "wrong"), [
-    (True, "slab_first_up(s, kept) / kept", "slab_first_up(s, kept)"),
+    (True, ": slab_first_down(s, kept)) / kept", ": slab_first_down(s, kept))"),
     (True, "low = vec4(c, c2, c3, c4)", "low = vec4(c2, c, c3, c4)"),
-    (True, "textureLod(scattering_up_mean, place", "textureLod(scattering_up_mean, place.yxz * vec3(1.0, 0.9, 1.0)"),
-    (False, "(1.0 + 0.1 * s.optical_depth)", "(1.0 + 0.2 * s.optical_depth)"),
-    (False, "(scaled - once);\n    vec3 single", "scaled;\n    vec3 single"),
-    (False, "exp(-min(path, SLAB_DEEPEST)) * (1.0 + met)", "exp(-min(path, SLAB_DEEPEST))"),
+    (True, "0.5 * (up ? place.z : place.z + 1.0)", "0.5 * (up ? place.z + 1.0 : place.z)"),
+    (False, "1.0 + 0.1 * s.optical_depth", "1.0 + 0.2 * s.optical_depth"),
+    (False, "SCATTERING_GLOW_STEP = 2.0", "SCATTERING_GLOW_STEP = 1.9"),
+    (False, "(up ? vec3(1.0) : scattering_glow_factor(s))", "1.0"),
 ])
 def test_a_wrong_light_is_found(
     ask: Ask, baked: Baked, spoil: Callable, technique: AddingDoubling, up: bool, right: str, wrong: str
