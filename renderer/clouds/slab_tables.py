@@ -119,10 +119,11 @@ def _band(streams: Streams, tau: np.ndarray) -> dict[str, np.ndarray]:
 def _glow(phase: Arrays, peak: np.ndarray) -> np.ndarray:
     """How light around the sun differs from order 1 of the scaled layer with the true phase function, as a factor.
 
-    The peak p is what delta-M takes out: moments f up to its cut, those of the phase function beyond. Along a path of optical
-    depth t, order 1 is P t e^(-t); what the peak leaves of P goes through the scaled layer, (P - f p) t (e^(-(1 - f) t) - e^-t);
-    and n deflections by the peak alone, two and more, are Poisson's: the spectrum e^-t (e^(f p_l t) - 1 - f p_l t) (formulas
-    a3). Their sum is divided by P t e^(-(1 - f) t). Behind the sun's hemisphere it is 1.
+    The peak p is what delta-M takes out: moments f up to its cut, those of the phase function beyond. Along a path of
+    optical depth t, order 1 is P t e^(-t); what the peak leaves of P goes through the scaled layer, (P - f p) t
+    (e^(-(1 - f) t) - e^-t); and n deflections by the peak alone, two and more, are Poisson's: the spectrum e^-t (e^(f
+    p_l t) - 1 - f p_l t) (formulas a3). Their sum is divided by P t e^(-(1 - f) t). Behind the sun's hemisphere it is
+    1.
 
     Returns:
         (GLOW_PATHS, GLOW_ANGLES, 3).

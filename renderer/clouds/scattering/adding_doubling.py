@@ -43,8 +43,8 @@ class AddingDoubling(ScatteringTechnique):
         return [Bake("doubling", tables.bake_doubling, {}, (state.phase.phase_bake(),), version=2, seconds=1)]
 
     def kept_textures(self, state: Any, baked: Mapping[str, Arrays]) -> dict[str, np.ndarray]:
-        """Volumes by optical depth (the two sides one above the other), sun and view; pictures by optical depth and sun, or
-        by path and angle."""
+        """Volumes by optical depth (the two sides one above the other), sun and view; pictures by optical depth and
+        sun, or by path and angle."""
         found = baked["doubling"]
         volumes = {name: np.concatenate(list(found[name])) for name in ("mean", "low", "high")}
         return {**volumes, "flux": found["flux"], "even": found["even"][None], "glow": found["glow"]}
