@@ -48,16 +48,16 @@ def bounce(
         from_ground, from_cloud = albedo * term[0], reflectance * term[1]
         terms = [*terms[-3:], term]
     if tail and len(terms) == 4:
-        ground, cloud = (total + _tail([pair[side] for pair in terms])
+        ground, cloud = (total + series_tail([pair[side] for pair in terms])
                          for side, total in enumerate((ground, cloud)))
     return ground, cloud
 
 
-def _tail(terms: list[np.ndarray]) -> np.ndarray:
-    """What follows four terms of a series that repeats its ratio every second term, band by band."""
+def series_tail(terms: list[np.ndarray], axes: tuple[int, ...] = (-2, -1)) -> np.ndarray:
+    """What follows four terms of a series that repeats its ratio every second term, summed over `axes` to find it."""
     before, now = terms[0] + terms[1], terms[2] + terms[3]
-    sums = before.sum((-2, -1), keepdims=True)
-    ratio = now.sum((-2, -1), keepdims=True) / np.where(sums > 0, sums, 1)
+    sums = before.sum(axes, keepdims=True)
+    ratio = now.sum(axes, keepdims=True) / np.where(sums > 0, sums, 1)
     ratio = np.clip(ratio, 0, 0.999)
     return now * ratio / (1 - ratio)
 
