@@ -47,8 +47,8 @@ class Transfer:
 class Detail:
     """What is known to be finer than a basis' parts, (GRID, GRID) each: how light lies within a part.
 
-    A part's mean irradiance is weighed by what answers it, and what leaves a part is spread as that answer: the light of
-    a summit with snow comes from its snow. A matrix still takes mean radiosities to irradiances.
+    A part's mean irradiance is weighed by what answers it, and what leaves a part is spread as that answer: the light
+    of a summit with snow comes from its snow. A matrix still takes mean radiosities to irradiances.
 
     Attributes:
         albedo: of the ground, its mean over the bands; it is inside G, C and S then in as far as it varies in a part.

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import time
-
 import numpy as np
 import pytest
 
@@ -97,15 +95,3 @@ def test_many_squares_are_many_solutions() -> None:
             exact = direct(FLAT, given, lit[k, band], cloud[k, band])
             np.testing.assert_allclose(found[0][k, band], exact[0], rtol=1e-4)
             np.testing.assert_allclose(found[1][k, band], exact[1], rtol=1e-4)
-
-
-@pytest.mark.slow
-def test_a_moved_sun_is_solved_at_once() -> None:
-    """256 squares of 64 coefficients in three bands."""
-    solver, _, _, lit = many(256)
-    dark = np.zeros_like(lit)
-    solver.solve(lit, dark)
-    start = time.process_time()
-    for _ in range(10):
-        solver.solve(lit, dark)
-    assert (time.process_time() - start) / 10 < 0.5, "CPU seconds; milliseconds where nothing else runs"
