@@ -22,10 +22,10 @@ SMALL = {"quality": {"kind": "samples", "n": 2}, **worlds.PLAIN}
 
 def furnish(cache: Cache, state: Any) -> None:
     """Put hand-made bakes where the session looks for the state's own."""
-    zeros = np.zeros((2, 16, 32, 32), np.float32)
+    dark = {"coefficients": np.zeros((8, 16, 16, 16), np.float32), "basis": np.zeros((32, 10, 16), np.float32)}
     made: dict[str, Any] = {
         "sky": worlds.sky((0.2, 0.3, 0.5)), "terrain": worlds.ground(), "pattern": worlds.uniform(40),
-        "terrain_horizon": {"sectors": zeros[0]}, "canopy_horizon": {"sectors": zeros},
+        "transmittance": dark,
     }
     for bake in bakes(state):
         cache.put(bake_key(bake), made[bake.name])
@@ -66,7 +66,7 @@ def test_a_description_is_json_and_holds_valid_documents(session: Session) -> No
 @pytest.mark.parametrize(("arguments", "field"), [
     ({"scene": "tundra"}, "scene"),
     ({"scene": "forest", "preset": "midnight"}, "preset"),
-    ({"scene": "forest", "sets": {"shadow.softness": "soft"}}, "shadow.softness"),
+    ({"scene": "forest", "sets": {"shadow.strength": "soft"}}, "shadow.strength"),
     ({"scene": "forest", "sets": {"shadow.kind": "magic"}}, "shadow.kind"),
     ({"scene": "forest", "sets": {"sun.elevation": float("nan")}}, "sun.elevation"),
     ({"scene": "forest", "sets": {"..": 1}}, ".."),

@@ -33,7 +33,7 @@ def test_each_technique_has_its_own_numbers_and_the_default_those_of_all() -> No
         return {"parameters": {"moves": "sun"}, "frame_ms": 90.0 * twice, "yardsticks": 0.5 * twice}
 
     found = facts("forest", lines(error), lines(cost)[: len(variants("forest"))], 48, 40.0)
-    none, default = (found["slots"]["shadow"][kind] for kind in ("none", "double_horizon_map"))
+    none, default = (found["slots"]["shadow"][kind] for kind in ("none", "voxel_transmittance"))
     assert none == pytest.approx({"error": 0.4, "worst": 0.6, "sun": 1.0, "sun_ms": 40.0})
     assert default == pytest.approx({"error": 0.2, "worst": 0.3, "sun": 0.5, "sun_ms": 20.0})
     assert found["slots"]["light"]["leaf"] == default

@@ -112,7 +112,6 @@ PRESETS = {
             "camera": _orbit((1150, -300, 265), 650, 305, 15),
             "sun": _sun(190, 45),
             "air": {"weather": "overcast"},
-            "height_shading": {"kind": "none"},
             "sky": {"kind": "visible_hemisphere"},
             "view": {"exposure": 0.9},
         },

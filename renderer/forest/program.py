@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 ENTRY_STEPS = 128
 """Safe steps a ray may take over the canopy before it meets it."""
 
-SCOUT_BLOCKS = (16, 4, 2)
+SCOUT_BLOCKS = (16, 4)
 """Pixels a side of the blocks whose way to the canopy is found once for all their rays, one after the other."""
 
 MARCH_STEPS = 1024

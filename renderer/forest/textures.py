@@ -77,9 +77,12 @@ def ground_textures(gl: GL, ground: Arrays) -> dict[str, AnyTexture]:
 def packed(colour: np.ndarray, anchor: np.ndarray) -> np.ndarray:
     """Colour and anchor of each voxel as four 16-bit numbers, so that a march reads a voxel from one cache line.
 
-    Two bytes in each: red and green, blue and opacity, foot x and y, distance and wood.
+    Two bytes in each: red and green, blue and opacity, foot x and y, distance and wood. The colour is the albedo,
+    as coarser levels have it, no longer times the opacity: light may be looked at where another level begins.
     """
-    return paired(np.concatenate([colour, anchor], axis=-1))
+    opacity = np.maximum(colour[..., 3:], 1).astype(np.uint16)
+    albedo = np.minimum((colour[..., :3].astype(np.uint16) * 255 + opacity // 2) // opacity, 255).astype(np.uint8)
+    return paired(np.concatenate([albedo, colour[..., 3:], anchor], axis=-1))
 
 
 def paired(given: np.ndarray) -> np.ndarray:

@@ -45,17 +45,13 @@ float scene_entry(vec3 origin, vec3 direction) {
     return origin.z <= scene_top ? 0.0 : direction.z < 0.0 ? (scene_top - origin.z) / direction.z : -1.0;
 }
 
-// Ground between t0 (above it) and t1 (at or below it), by regula falsi on the height above the ground.
-float ground_crossing(vec3 origin, vec3 direction, float t0, float t1) {
-    vec3 p0 = origin + t0 * direction;
-    vec3 p1 = origin + t1 * direction;
-    float a0 = p0.z - ground_height(p0.xy);
-    float a1 = p1.z - ground_height(p1.xy);
-    for (int i = 0; i < 3; i++) {
-        float t = t0 + (t1 - t0) * clamp(a0 / max(a0 - a1, 1e-6), 0.02, 0.98);
-        vec3 p = origin + t * direction;
-        float a = p.z - ground_height(p.xy);
-        if (a > 0.0) { t0 = t; a0 = a; } else { t1 = t; a1 = a; }
+// Ground between t.x (above it) and t.y (at or below it), by regula falsi on the height above the ground, `above` at either end [m].
+float ground_crossing(vec3 origin, vec3 direction, vec2 t, vec2 above) {
+    for (int i = 0; i < 2; i++) {
+        float middle = mix(t.x, t.y, clamp(above.x / max(above.x - above.y, 1e-6), 0.02, 0.98));
+        vec3 p = origin + middle * direction;
+        float there = p.z - ground_height(p.xy);
+        if (there > 0.0) { t.x = middle; above.x = there; } else { t.y = middle; above.y = there; }
     }
-    return t0 + (t1 - t0) * clamp(a0 / max(a0 - a1, 1e-6), 0.0, 1.0);
+    return mix(t.x, t.y, clamp(above.x / max(above.x - above.y, 1e-6), 0.0, 1.0));
 }

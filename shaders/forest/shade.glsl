@@ -15,7 +15,7 @@ vec3 outgoing(vec4 place, vec4 voxel, float level, vec3 to_eye) {
     vec3 slope = ground_normal(place.xy);
     vec3 mean = texel.xyz * 2.0 - 1.0 + vec3(0.0, 0.0, 1e-4);
     float kappa = length(mean);
-    vec3 leaf = albedo_of(voxel, level) * (1.0 + ground_tint_strength * tint_of(foot_of(place.xy, voxel)));
+    vec3 leaf = albedo_of(voxel) * (1.0 + ground_tint_strength * tint_of(foot_of(place.xy, voxel)));
     vec3 passed = opaque ? vec3(0.0) : min(ground_translucency * ground_glow * leaf, max(1.0 - leaf, 0.0));
     Matter matter = Matter(leaf, passed, mean / kappa, min(kappa, 1.0), slope, vec3(uv, h), level);
     vec3 soil = ground_albedo * (1.0 + ground_patches * patches_at(place.xy));

@@ -24,11 +24,14 @@ float first_sunward(vec2 line, float texel, float threshold) {
     float wanted = -log(1.0 - threshold);
     float gathered = 0.0;
     float previous = t;
+    float before = 0.0;
+    float above = 0.0;
     int found = t < 0.0 ? 0 : 1;
     for (int i = 0; i < MARCH_STEPS && found == 1; i++) {
         vec3 p = origin + t * direction;
         vec3 ground = ground_at(p.xy);
-        float above = p.z - ground.x;
+        above = p.z - ground.x;
+        before = i == 0 ? max(above, 0.0) : before;
         float gap = above - canopy_top;
         bool over = gap > 0.0;
         float layer = layer_height(p.xy);
@@ -39,6 +42,7 @@ float first_sunward(vec2 line, float texel, float threshold) {
         if (found == 1) {
             gathered += depth;
             previous = t;
+            before = above;
             // No skip passes through the ground: a brink may stand in an empty canopy.
             float skip = max((free_voxels(voxel) - 1.0) / rate, stand.y - GLADE_REACH);
             t += max(ds, over ? step_above(gap, direction, ground) : min(skip, step_above(above, direction, ground)));
@@ -46,6 +50,6 @@ float first_sunward(vec2 line, float texel, float threshold) {
             t += ds * ((wanted - gathered) / depth - 0.5);
         }
     }
-    float met = found == 2 ? ground_crossing(origin, direction, previous, t) : t;
+    float met = found == 2 ? ground_crossing(origin, direction, vec2(previous, t), vec2(before, above)) : t;
     return found == 0 ? NEVER : begin - met;
 }

@@ -83,10 +83,8 @@ float opacity_of(vec4 voxel) {
     return min(two_bytes(voxel.y).y / 255.0, 0.99975586);
 }
 
-// Associated with opacity at the finest level; coarser ones have too little of it to divide by.
-vec3 albedo_of(vec4 voxel, float level) {
-    vec4 bytes = vec4(two_bytes(voxel.x), two_bytes(voxel.y));
-    return bytes.rgb / (level > 0.5 ? 255.0 : max(bytes.a, 1.0));
+vec3 albedo_of(vec4 voxel) {
+    return vec3(two_bytes(voxel.x), two_bytes(voxel.y).x) / 255.0;
 }
 
 // Voxels of the finest level that are free all around.

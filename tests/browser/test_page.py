@@ -93,9 +93,9 @@ def test_another_technique_changes_the_picture(page: Page) -> None:
     before = picture(page)
     slot = page.locator("[data-slot='height_shading']")
     slot.locator(".slot-button").click()
-    slot.locator("input[value='none']").check()
+    slot.locator("input[value='empirical']").check()
     house.settled(page)
-    assert house.state_of(page)["height_shading"]["kind"] == "none"
+    assert house.state_of(page)["height_shading"]["kind"] == "empirical"
     assert changed_share(before, picture(page)) > 0.1
 
 

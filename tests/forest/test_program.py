@@ -77,7 +77,7 @@ def test_every_part_declares_its_own(thread: GLThread) -> None:
 
 def test_live_values_need_no_new_program() -> None:
     one = trace_source(worlds.state()), shade_source(worlds.state())
-    for change in ({"shadow": {"softness": 7.0}}, {"sun": {"azimuth": 10}}, {"ground": {"tint_strength": 0.5}},
+    for change in ({"shadow": {"strength": 0.3}}, {"sun": {"azimuth": 10}}, {"ground": {"tint_strength": 0.5}},
                    {"camera": {"distance": 333}}, {"geometry": {"step": 2.0}}):
         other = worlds.state(**change)
         assert trace_source(other) is one[0]
@@ -98,7 +98,7 @@ def test_a_line_of_the_frame_leads_back_to_its_file() -> None:
     source = shade_source(worlds.state())
     number = next(n for n, line in enumerate(source.text.split("\n"), 1) if "float height_factor(" in line)
     file, line = source.locate(number)
-    assert file == "forest/height_shading/empirical.glsl"
+    assert file == "forest/height_shading/none.glsl"
     assert line > 1
 
 

@@ -54,7 +54,7 @@ def test_bakes_come_once_and_after_their_inputs() -> None:
     found = bakes(ForestState())
     names = [bake.name for bake in found]
     assert len(names) == len(set(names))
-    assert {"sky", "terrain", "pattern", "terrain_horizon", "canopy_horizon"} == set(names)
+    assert {"sky", "terrain", "pattern", "transmittance"} == set(names)
     for place, bake in enumerate(found):
         assert {source.name for source in bake.inputs} <= set(names[:place])
 
@@ -65,10 +65,10 @@ def test_only_what_a_bake_reads_changes_it() -> None:
 
     plain = keys()
     for live in ({"sun": {"azimuth": 3}}, {"camera": {"distance": 50}}, {"ground": {"tint_strength": 0.1}},
-                 {"shadow": {"softness": 1.0}}, {"light": {"kind": "gouraud"}}, {"view": {"exposure": 0}}):
+                 {"shadow": {"strength": 0.5}}, {"light": {"kind": "gouraud"}}, {"view": {"exposure": 0}}):
         assert keys(**live) == plain
     assert keys(cover={"clearings": 0.5})["terrain"] != plain["terrain"]
     assert keys(canopy={"seed": 9})["pattern"] != plain["pattern"]
     assert keys(air={"haze": 20})["sky"] != plain["sky"]
-    assert keys(shadow={"sectors": 4})["terrain_horizon"] != plain["terrain_horizon"]
+    assert keys(shadow={"coefficients": 4})["transmittance"] != plain["transmittance"]
     assert set(keys(shadow={"kind": "none"})) == {"sky", "terrain", "pattern"}

@@ -188,7 +188,7 @@ def voxel_pattern() -> dict[str, np.ndarray]:
 
 
 BODY = """vec4 voxel = voxel_at(vec3(uv, h), 0.0);
-vec3 albedo = albedo_of(voxel, 0.0);
+vec3 albedo = albedo_of(voxel);
 vec2 foot = foot_of(vec2(0.0), voxel);
 result[0] = albedo.r; result[1] = albedo.g; result[2] = albedo.b; result[3] = opacity_of(voxel);
 result[4] = foot.x; result[5] = foot.y; result[6] = free_voxels(voxel);"""
@@ -202,7 +202,8 @@ def voxel_error(ask: Ask) -> float:
     found = ask([], BODY, inputs, 7, pattern=pattern)
     colour, anchor = (pattern[name][k, j, i].astype(float) for name in ("colour", "anchor"))
     exact = np.concatenate([
-        colour[:, :3] / np.maximum(colour[:, 3:], 1), np.minimum(colour[:, 3:] / 255, 1 - 2.0**-12),
+        np.minimum(np.floor(255 * colour[:, :3] / np.maximum(colour[:, 3:], 1) + 0.5) / 255, 1),
+        np.minimum(colour[:, 3:] / 255, 1 - 2.0**-12),
         (anchor[:, :2] - 128) / 16, anchor[:, 2:3]], axis=1)
     return float((np.abs(found - exact) / np.maximum(np.abs(exact), 1)).max())
 
@@ -221,8 +222,8 @@ def test_a_wrong_unpacking_is_found(ask: Ask, spoil: Callable, right: str, wrong
 
 
 def test_two_bytes_share_a_number() -> None:
-    colour, anchor = (np.array([[[values]]], np.uint8) for values in ((1, 2, 3, 255), (128, 0, 24, 255)))
-    assert packed(colour, anchor)[0, 0, 0].tolist() == [258, 1023, 32768, 24 * 256 + 255]
+    colour, anchor = (np.array([[[values]]], np.uint8) for values in ((1, 2, 3, 51), (128, 0, 24, 255)))
+    assert packed(colour, anchor)[0, 0, 0].tolist() == [5 * 256 + 10, 15 * 256 + 51, 32768, 24 * 256 + 255]
 
 
 def test_the_tint_is_the_worlds_own(ask: Ask) -> None:

@@ -15,6 +15,8 @@ float to_next_sheet(float above, float climb, float spacing, out float sheet) {
 void geometry_trace(vec3 origin, vec3 direction, float t, vec4 jitter, inout Event event) {
     vec3 offset = voxel_offset(jitter) * vec3(1.0, 1.0, 0.0);
     float previous = t;
+    float before = origin.z + t * direction.z - ground_height(origin.xy + t * direction.xy);
+    float above = before;
     int found = 1;
     for (int i = 0; i < MARCH_STEPS && found == 1; i++) {
         vec3 p = origin + t * direction;
@@ -22,7 +24,7 @@ void geometry_trace(vec3 origin, vec3 direction, float t, vec4 jitter, inout Eve
         float spacing = layer / float(geometry_count);
         float longest = 2.0 * spacing;
         vec3 ground = ground_at(p.xy);
-        float above = p.z - ground.x;
+        above = p.z - ground.x;
         float gap = above - canopy_top;
         vec3 ahead = p + 0.25 * direction;
         // Of the height in the layer, which may itself be rising: in metres of the layer here.
@@ -48,11 +50,12 @@ void geometry_trace(vec3 origin, vec3 direction, float t, vec4 jitter, inout Eve
         add_matter(event, vec4(q, h), voxel, opacity);
         if (found == 1) {
             previous = t;
+            before = above;
             t = meets ? hit : over ? t + max(step_above(gap, direction, ground), 0.01) : t + min(max(reach, 0.02), longest);
         }
     }
     if (found == 2) {
-        float hit = ground_crossing(origin, direction, previous, t);
+        float hit = ground_crossing(origin, direction, vec2(previous, t), vec2(before, above));
         add_matter(event, vec4(origin + hit * direction, GROUND), vec4(0.0), 1.0);
     }
 }

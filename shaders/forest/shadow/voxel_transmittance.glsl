@@ -8,9 +8,6 @@
 
 #include "forest/land_shadow.glsl"
 
-// Length [m] over which the slope of the ground along the ray is taken.
-const float SLOPE_RUN = 16.0;
-
 // Farthest [m] that a ray is followed to the canopy's top.
 const float WAY_OUT = 300.0;
 
@@ -23,8 +20,8 @@ vec2 kept_elevations(float elevation) {
 float shadow_visibility(vec3 position, float h, vec2 uv) {
     float run = max(length(sun_direction.xy), 1e-4);
     float above = h * layer_height(position.xy);
-    vec2 ahead = position.xy + sun_direction.xy / run * SLOPE_RUN;
-    float climb = sun_direction.z / run - (ground_height(ahead) - position.z + above) / SLOPE_RUN;
+    vec3 normal = ground_normal(position.xy);
+    float climb = (sun_direction.z + dot(normal.xy, sun_direction.xy) / max(normal.z, 0.05)) / run;
     vec2 kept = kept_elevations(sun_elevation);
     float place = clamp(3.0 * log(max(atan(climb), 0.001) / kept.x) / log(kept.y / kept.x), 0.0, 3.0);
     vec4 shares = textureLod(shadow_shares, vec3(uv, h), 0.0);

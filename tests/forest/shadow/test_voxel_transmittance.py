@@ -93,7 +93,7 @@ def test_an_even_canopy_dims_as_beer_and_lambert_say(ask: Ask, slope: float) -> 
 
 
 @pytest.mark.parametrize(("right", "wrong"), [
-    ("(ground_height(ahead) - position.z + above)", "-(ground_height(ahead) - position.z + above)"),
+    ("+ dot(normal.xy, sun_direction.xy)", "- dot(normal.xy, sun_direction.xy)"),
     ("clamp(3.0 * log(", "clamp(4.0 * log("),
     ("stand * stretched", "stand"),
     ("vec3(uv, h), 0.0)", "vec3(uv, 0.5 * h), 0.0)"),
