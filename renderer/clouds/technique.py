@@ -32,6 +32,14 @@ class CloudsTechnique(Technique):
         interpolation and clamped at their edges."""
         return {}
 
+    def frame_key(self, state: Any) -> tuple[Any, ...]:
+        """What its frame textures depend on beside what was baked; empty where it has none."""
+        return ()
+
+    def frame_textures(self, state: Any, baked: Mapping[str, Arrays]) -> dict[str, np.ndarray]:
+        """As `kept_textures`, for one sun and moment: made again each time `frame_key` changes."""
+        return {}
+
     def constants(self, state: Any, baked: Mapping[str, Arrays]) -> dict[str, Any]:
         """Values of `extra_declarations`."""
         return {}

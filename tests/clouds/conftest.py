@@ -56,6 +56,9 @@ def _asked(
     *,
     files: Sequence[str] = (),
     textures: Mapping[str, np.ndarray] | None = None,
+    values: Mapping[str, Any] | None = None,
+    declarations: str = "",
+    pictures: Mapping[str, np.ndarray] | None = None,
 ) -> np.ndarray:
     """Evaluate GLSL for N inputs.
 
@@ -63,27 +66,29 @@ def _asked(
         techniques: by slot, in the order in which their files come; what they need is baked.
         files: more files, before the techniques'.
         textures: in the place of those of the techniques, by their full names.
+        values: more uniforms. pictures: more samplers, repeated. declarations: of those.
     """
     state = SimpleNamespace(**techniques)
     arrays: dict[str, Arrays] = {}
-    text, values, pictures, macros = [], {}, {}, {}
+    text, given, macros = [declarations], dict(values or {}), {}
+    held = {name: gl.texture2d(np.asarray(array, np.float32), wrap="repeat") for name, array in (pictures or {}).items()}
     for technique in techniques.values():
         for bake in technique.bakes(state):
             arrays[bake.name] = baked(bake)
     shaders = list(files)
     for slot, technique in techniques.items():
         kept = {f"{slot}_{name}": array for name, array in technique.kept_textures(state, arrays).items()}
-        pictures |= {name: _texture(gl, (textures or {}).get(name, array)) for name, array in kept.items()}
+        held |= {name: _texture(gl, (textures or {}).get(name, array)) for name, array in kept.items()}
         text += [uniform_declarations(type(technique), slot), *technique.extra_declarations]
         text += [f"uniform {kind} {slot}_{name};" for name, kind in technique.textures.items()]
-        values |= uniforms(technique, slot) | technique.constants(state, arrays)
+        given |= uniforms(technique, slot) | technique.constants(state, arrays)
         macros |= defines(technique, slot)
         shaders += [*technique.includes, glsl_file("clouds", slot, technique.kind)]
     try:
-        return probe(gl, shaders, body, inputs, outputs, uniforms=values, textures=pictures,
+        return probe(gl, shaders, body, inputs, outputs, uniforms=given, textures=held,
                      declarations="\n".join(text), defines=macros)
     finally:
-        for texture in pictures.values():
+        for texture in held.values():
             texture.release()
 
 

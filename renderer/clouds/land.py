@@ -1,0 +1,90 @@
+"""The land around the site: a square of an elevation model that comes down to the sphere at its edge."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from renderer.clouds.world_scale import LAND_CELL, LAND_NODES, LAND_RIM
+from renderer.core.cache import AssetStore
+from renderer.core.errors import InputError
+from renderer.core.technique import Arrays
+from renderer.world.horizon_sweep import sweeps
+from renderer.world.terrain import TerrainReading, crop, default_terrain, load_terrain
+
+HORIZON_AZIMUTHS = 64
+"""Azimuths in which the land's horizon is kept."""
+
+
+def bake_land(arguments: dict[str, Any], inputs: dict[str, Arrays], progress: Callable[[float, str], None]) -> Arrays:
+    """Height above the square's lowest point, and how steep it is.
+
+    Args:
+        arguments: the document's `land`.
+
+    Returns:
+        `height` (N, N) float32 [m], row 0 the SOUTHERN edge, nodes `LAND_CELL` apart around the site, 0 at the edge;
+        `top` () the highest [m] and `steepness` () the greatest rise over run; `horizon` (A, N / 2, N / 2) float32 [rad], the elevation of the land's
+        horizon towards A azimuths clockwise from north, at the means of 2 x 2 nodes.
+    """
+    progress(0.1, "reading the land")
+    height = np.zeros((LAND_NODES, LAND_NODES)) if arguments["kind"] == "flat" else _square(arguments)
+    nodes = (np.arange(LAND_NODES) - (LAND_NODES - 1) / 2) * LAND_CELL
+    inside = LAND_NODES * LAND_CELL / 2 - np.abs(nodes)
+    t = np.clip(inside / LAND_RIM, 0.0, 1.0)
+    rim = t * t * (3.0 - 2.0 * t)
+    height = (height * rim[:, None] * rim[None, :]).astype(np.float32)
+    return {
+        "height": height[::-1].copy(),
+        "top": np.array(float(height.max())),
+        "steepness": np.array(_steepness(height)),
+        "horizon": _horizons(height, progress),
+    }
+
+
+def horizon_towards(land: Arrays, azimuth: float) -> np.ndarray:
+    """Elevation of the horizon [rad] towards an azimuth [rad], (N / 2, N / 2), between the two nearest of the bake."""
+    horizon = land["horizon"]
+    place = azimuth / (2 * math.pi) * len(horizon) % len(horizon)
+    low = int(place)
+    share = np.float32(place - low)
+    found: np.ndarray = horizon[low] + share * (horizon[(low + 1) % len(horizon)] - horizon[low])
+    return found
+
+
+def _horizons(height: np.ndarray, progress: Callable[[float, str], None]) -> np.ndarray:
+    coarse = height.reshape(LAND_NODES // 2, 2, LAND_NODES // 2, 2).mean(axis=(1, 3))
+    azimuths = [2 * math.pi * k / HORIZON_AZIMUTHS for k in range(HORIZON_AZIMUTHS)]
+    found = np.empty((HORIZON_AZIMUTHS, *coarse.shape), np.float32)
+    for number, slopes in sweeps(coarse, (2 * LAND_CELL, 2 * LAND_CELL), azimuths):
+        progress(0.2 + 0.8 * number / HORIZON_AZIMUTHS, "horizon of the land")
+        found[number] = np.arctan(np.maximum(slopes, -1.0))[::-1]
+    return found
+
+
+def _steepness(height: np.ndarray) -> float:
+    return float(np.hypot(*(np.abs(np.diff(height, axis=axis)).max() / LAND_CELL for axis in (0, 1))))
+
+
+def _square(arguments: dict[str, Any]) -> np.ndarray:
+    """Heights above the lowest point, row 0 the northern edge."""
+    side = LAND_NODES * LAND_CELL
+    if arguments["kind"] == "built_in":
+        found = crop(default_terrain(), (0.0, 0.0), side, LAND_CELL).elevation
+    else:
+        found = _own(arguments, side)
+    return arguments["relief"] * (found - found.min()).astype(np.float64)
+
+
+def _own(arguments: dict[str, Any], side: float) -> np.ndarray:
+    try:
+        path = AssetStore().get(arguments["asset"].removeprefix("asset:")).path
+        terrain = load_terrain(path, reading=TerrainReading.model_validate(arguments["reading"]))
+        return crop(terrain, (arguments["east"], arguments["north"]), side, LAND_CELL).elevation
+    except InputError as failure:
+        if failure.field in TerrainReading.model_fields:
+            raise failure.at(f"land.reading.{failure.field}") from None
+        raise failure.at("land.east" if failure.field == "centre" else "land.asset") from None

@@ -1,0 +1,208 @@
+"""Draws the clouds on the GL thread."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import moderngl
+import numpy as np
+
+from renderer.clouds.cloud_map import highest
+from renderer.clouds.program import AIR_AROUND, AIR_ROWS, AIR_SLICES, air_source, shade_source, trace_source
+from renderer.clouds.textures import horizon_texture, moment_map, technique_textures, world_textures
+from renderer.clouds.world_scale import AIR_TOP, LAND_CELL, SYSTEMS_SIDE
+from renderer.core.params import uniforms
+from renderer.core.technique import Arrays, BakedArrays
+from renderer.gl.context import GL
+from renderer.gl.layers import Layers, LayerStore
+from renderer.gl.program import AnyTexture
+from renderer.gl.resident import Resident
+from renderer.gl.source import Source
+from renderer.gl.targets import run_fullscreen
+from renderer.world.camera import Orthographic, camera_uniforms
+from renderer.world.sky import SOLAR_CONSTANT
+from renderer.world.sun import angles, direction
+
+if TYPE_CHECKING:
+    from renderer.clouds.state import CloudsState
+
+Baked = Mapping[str, BakedArrays]
+Prepared = tuple[Source, dict[str, AnyTexture], dict[str, Any]]
+
+TRACES_KEPT = 64 << 20
+"""Bytes of traced samples kept: ten of 512 x 512, so that a moved sun only lights them again."""
+
+AIRS_KEPT = 8 << 20
+"""Bytes kept of the air's tables: those of the last few cameras and suns."""
+
+MOMENTS_KEPT = 128 << 20
+"""Bytes kept of what suns and moments ask for."""
+
+
+class CloudsRenderer:
+    """Textures of what was baked, and the frames drawn with them; one serves every view of the process."""
+
+    def __init__(self, gl: GL) -> None:
+        self._gl = gl
+        self._baked = Resident(gl, 24)
+        self._moment = Resident(gl, 24, MOMENTS_KEPT)
+        self._traces = LayerStore(gl, ((4, "f4"), (4, "f2")), TRACES_KEPT)
+        self._airs = LayerStore(gl, ((4, "f4"),), AIRS_KEPT)
+
+    def prepare(
+        self, state: CloudsState, baked: Baked, size: tuple[int, int], offset: tuple[float, float], sample: int
+    ) -> Prepared:
+        """Find the ground of one sample, unless it is still there, and gather what lights it.
+
+        Args:
+            state, baked: the document and what it needed baked.
+            size: (width, height) in pixels.
+            offset: of the sample inside its pixel, from the top-left corner.
+            sample: its number.
+        """
+        arrays = {name: entry.arrays for name, entry in baked.items()}
+        values = world_values(state, arrays) | camera_uniforms(state.camera, *size)
+        values |= air_frame(values["camera_origin"], state.planet.radius, values["sun_direction"])
+        values |= {"picture_size": size, "pixel_offset": offset, "pixel_angle": _pixel_angle(state, size)}
+        textures = self._textures(state, baked, arrays)
+        for slot, technique in state.techniques().items():
+            values |= uniforms(technique, slot) | technique.constants(state, arrays)
+        key = (state.camera, size, offset, state.planet, baked["land"].key)
+
+        def draw(layers: Layers) -> None:
+            layers.use()
+            run_fullscreen(self._gl, trace_source(), textures, values)
+
+        textures["traced"], textures["traced_albedo"] = self._traces.get(key, size, draw)
+        textures |= self._air_tables(state, baked, values, textures)
+        return shade_source(state), textures, values
+
+    def _air_tables(
+        self, state: CloudsState, baked: Baked, values: dict[str, Any], textures: dict[str, AnyTexture]
+    ) -> dict[str, AnyTexture]:
+        """The air as this camera's place and this sun show it."""
+        place = (tuple(values["camera_origin"]), state.planet.radius, baked["air"].key)
+        made: dict[str, AnyTexture] = {}
+        for name, width, key in (
+            ("air_light", AIR_AROUND * AIR_SLICES, (*place, angles(state.sun))),
+            ("air_passed", AIR_SLICES, place),
+        ):
+
+            def draw(layers: Layers, name: str = name) -> None:
+                layers.use()
+                run_fullscreen(self._gl, air_source(name == "air_light"), textures, values)
+
+            made[name] = self._airs.get((name, key), (width, AIR_ROWS), draw)[0]
+            made[name].filter = moderngl.LINEAR, moderngl.LINEAR
+        return made
+
+    def draw(self, prepared: Prepared) -> None:
+        """Light a prepared sample: linear premultiplied radiance into the bound framebuffer."""
+        run_fullscreen(self._gl, *prepared)
+
+    def release(self) -> None:
+        """Free every texture."""
+        self._baked.release()
+        self._moment.release()
+        self._traces.release()
+        self._airs.release()
+
+    def _textures(self, state: CloudsState, baked: Baked, arrays: Mapping[str, Arrays]) -> dict[str, AnyTexture]:
+        world = tuple(baked[name].key for name in ("air", "sky", "globe", "land", "fields"))
+        held = dict(self._baked.get(world, lambda: world_textures(self._gl, arrays)))
+        azimuth = angles(state.sun)[0]
+        held |= self._moment.get(
+            ("horizon", baked["land"].key, azimuth), lambda: horizon_texture(self._gl, arrays["land"], azimuth)
+        )
+        side = cloud_side(state)
+        held |= self._moment.get(
+            ("map", baked["fields"].key, state.clouds, state.time if moves(state) else 0.0),
+            lambda: moment_map(self._gl, state.clouds, arrays["fields"], side, state.time),
+        )
+        keys = tuple(sorted(entry.key for entry in baked.values()))
+        for slot, technique in state.techniques().items():
+            held |= self._baked.get(
+                (slot, technique, keys),
+                lambda s=slot, t=technique: technique_textures(self._gl, s, t.kept_textures(state, arrays)),  # type: ignore[misc]
+            )
+            if technique.frame_key(state):
+                held |= self._moment.get(
+                    (slot, technique.frame_key(state), keys),
+                    lambda s=slot, t=technique: technique_textures(self._gl, s, t.frame_textures(state, arrays)),  # type: ignore[misc]
+                )
+        return held  # type: ignore[return-value]
+
+
+def world_values(state: CloudsState, baked: Mapping[str, Arrays]) -> dict[str, Any]:
+    """Uniforms of the planet, its layer and the sun."""
+    return {
+        **uniforms(state.layer, "layer"),
+        **uniforms(state.planet, "planet"),
+        **globe_axes(state.planet.latitude, state.planet.longitude),
+        "air_haze": state.air.haze,
+        "land_cell": LAND_CELL,
+        "land_top": float(baked["land"]["top"]),
+        "land_steepness": float(baked["land"]["steepness"]),
+        "layer_highest": highest(state.clouds, baked["fields"]),
+        "cloud_drift": drift(state),
+        "cloud_side": cloud_side(state),
+        "cloud_repeats": 0.0 if state.clouds.kind == "asset" and not state.clouds.repeats else 1.0,
+        "cloud_systems_side": SYSTEMS_SIDE,
+        "sun_direction": direction(state.sun),
+        "sun_irradiance": (SOLAR_CONSTANT,) * 3,
+    }
+
+
+def air_frame(eye: Any, radius: float, sun: Any) -> dict[str, Any]:
+    """Axes and limits of the air's table at a camera (3,) [m] over a planet of that radius [m]."""
+    from_centre = np.asarray(eye, np.float64) + (0.0, 0.0, radius)
+    distance = max(float(np.linalg.norm(from_centre)), radius + 1.0)
+    up = from_centre / np.linalg.norm(from_centre)
+    level = np.asarray(sun, np.float64) - np.dot(sun, up) * up
+    if np.linalg.norm(level) < 1e-6:
+        level = np.cross(up, (1.0, 0.0, 0.0) if abs(up[0]) < 0.9 else (0.0, 1.0, 0.0))
+    above = distance > radius + AIR_TOP
+    return {
+        "air_up": tuple(up),
+        "air_ahead": tuple(level / np.linalg.norm(level)),
+        "air_horizon": math.pi - math.asin(radius / distance),
+        "air_limb": math.pi - math.asin((radius + AIR_TOP) / distance) if above else 0.0,
+    }
+
+
+def globe_axes(latitude: float, longitude: float) -> dict[str, tuple[float, float, float]]:
+    """The Earth's axes in the site's (east, north, up): towards 0 E and 90 E on the equator, and the north pole.
+
+    Args:
+        latitude, longitude: of the site, degrees.
+    """
+    lat, lon = math.radians(latitude), math.radians(longitude)
+    east = (-math.sin(lon), math.cos(lon), 0.0)
+    north = (-math.sin(lat) * math.cos(lon), -math.sin(lat) * math.sin(lon), math.cos(lat))
+    up = (math.cos(lat) * math.cos(lon), math.cos(lat) * math.sin(lon), math.sin(lat))
+    names = ("globe_east", "globe_north", "globe_up")
+    return {name: (east[k], north[k], up[k]) for k, name in enumerate(names)}
+
+
+def moves(state: CloudsState) -> bool:
+    """Whether the cloud map changes as time runs."""
+    return state.clouds.kind == "procedural" and state.clouds.evolution > 0
+
+
+def drift(state: CloudsState) -> tuple[float, float]:
+    """How far the wind has carried the map, east and north, m."""
+    way, azimuth = state.layer.wind * state.time, math.radians(state.layer.wind_azimuth)
+    return way * math.sin(azimuth), way * math.cos(azimuth)
+
+
+def cloud_side(state: CloudsState) -> float:
+    """Side of the square that the cloud map covers, m."""
+    return 1000.0 if state.clouds.kind == "uniform" else state.clouds.side
+
+
+def _pixel_angle(state: CloudsState, size: tuple[int, int]) -> float:
+    if isinstance(state.camera, Orthographic):
+        return 0.0
+    return 2 * math.tan(math.radians(state.camera.field_of_view) / 2) / size[1]

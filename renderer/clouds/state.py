@@ -1,0 +1,59 @@
+"""The clouds' whole state document."""
+
+from __future__ import annotations
+
+from typing import Any, Literal
+
+from renderer.clouds.planet import BuiltInLand, Clouds, Land, Layer, Planet, ProceduralClouds
+from renderer.core.params import param
+from renderer.core.registry import slot_union
+from renderer.world.atmosphere import Atmosphere
+from renderer.world.camera import Camera, Orbit
+from renderer.world.state import SceneState
+from renderer.world.sun import Sun, SunDirection
+
+SLOTS = ("geometry", "phase", "scattering", "cloud_shadow", "bounce")
+DEFAULTS = {
+    "geometry": "sphere",
+    "phase": "mie",
+    "scattering": "adding_doubling",
+    "cloud_shadow": "sun_ray",
+    "bounce": "none",
+}
+
+
+def _slot(name: str, title: str, help_text: str) -> Any:
+    return param({"kind": DEFAULTS[name]}, label=title, help=help_text, cost="host")
+
+
+class CloudsState(SceneState):
+    """State of the clouds: where one looks from, the sun, the planet, its layer of clouds, and one technique per slot."""
+
+    scene: Literal["clouds"] = "clouds"
+    camera: Camera = param(
+        Orbit(target=(0.0, 0.0, 1500.0), distance=16000.0, azimuth=200.0, elevation=14.0),
+        label="Camera",
+        help="Where the picture is taken from.",
+        cost="host",
+    )
+    sun: Sun = param(
+        SunDirection(azimuth=250.0, elevation=25.0), label="Sun", help="Where the light comes from.", cost="host"
+    )
+    layer: Layer = param(Layer(), label="Layer", help="The layer of clouds.")
+    clouds: Clouds = param(ProceduralClouds(), label="Cloud map", help="Where the layer is thick.", cost="bake")
+    planet: Planet = param(Planet(), label="Planet", help="The sphere, the site and its ground.")
+    land: Land = param(BuiltInLand(), label="Land", help="The land round the site.", cost="bake")
+    air: Atmosphere = param(Atmosphere(haze=4.0), label="Air", help="What sun and sky shine through.", cost="bake")
+    geometry: slot_union("clouds", "geometry") = _slot("geometry", "Geometry", "How long a ray runs through the layer.")  # type: ignore[valid-type]
+    phase: slot_union("clouds", "phase") = _slot("phase", "Phase function", "Where a droplet sends light.")  # type: ignore[valid-type]
+    scattering: slot_union("clouds", "scattering") = _slot(  # type: ignore[valid-type]
+        "scattering", "Scattering", "What the layer makes of the light."
+    )
+    cloud_shadow: slot_union("clouds", "cloud_shadow") = _slot(  # type: ignore[valid-type]
+        "cloud_shadow", "Cloud shadow", "What the layer leaves to the ground."
+    )
+    bounce: slot_union("clouds", "bounce") = _slot("bounce", "Bounce", "Light between ground and clouds.")  # type: ignore[valid-type]
+
+    def techniques(self) -> dict[str, Any]:
+        """The chosen technique of each slot."""
+        return {slot: getattr(self, slot) for slot in SLOTS}

@@ -1,0 +1,72 @@
+"""What was baked, and the moment's maps, as textures."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from renderer.clouds.air import skylight
+from renderer.clouds.cloud_map import thickness_map
+from renderer.clouds.land import horizon_towards
+from renderer.core.technique import Arrays
+from renderer.gl.context import GL
+from renderer.gl.program import AnyTexture
+
+
+def halved(levels: np.ndarray) -> list[np.ndarray]:
+    """The coarser levels of a picture (H, W, C): means of 2 x 2 texels."""
+    found = []
+    while min(levels.shape[:2]) > 1:
+        rows, columns = levels.shape[0] // 2, levels.shape[1] // 2
+        levels = levels[: 2 * rows, : 2 * columns].reshape(rows, 2, columns, 2, -1).mean(axis=(1, 3))
+        found.append(levels)
+    return found
+
+
+def mipmapped(gl: GL, array: np.ndarray, repeat: bool) -> AnyTexture:
+    """A float16 or byte texture with its levels."""
+    data = array[..., None] if array.ndim == 2 else array
+    kind = np.uint8 if data.dtype == np.uint8 else np.float16
+    mips = [np.ascontiguousarray(np.rint(level) if kind is np.uint8 else level).astype(kind) for level in halved(data)]
+    return gl.texture2d(np.ascontiguousarray(data.astype(kind)), wrap="repeat" if repeat else "clamp", mips=mips)
+
+
+def world_textures(gl: GL, baked: Mapping[str, Arrays]) -> dict[str, AnyTexture]:
+    """Those that last as long as what was baked."""
+    return {
+        "air_beam": gl.texture2d(baked["air"]["beam"]),
+        "air_glow": gl.texture2d(baked["air"]["glow"]),
+        "air_skylight": gl.texture2d(skylight(baked["sky"])),
+        "globe_albedo": mipmapped(gl, baked["globe"]["albedo"], True),
+        "land_heights": gl.texture2d(baked["land"]["height"]),
+        "cloud_systems": mipmapped(gl, baked["fields"]["systems"], True),
+    }
+
+
+def horizon_texture(gl: GL, land: Arrays, azimuth: float) -> dict[str, AnyTexture]:
+    """The land's horizon towards the sun's azimuth [rad clockwise from north]."""
+    return {"land_horizon": gl.texture2d(horizon_towards(land, azimuth))}
+
+
+def moment_map(gl: GL, clouds: Any, fields: Arrays, side: float, time: float) -> dict[str, AnyTexture]:
+    """The thickness map of a moment, and its slopes per metre."""
+    return {"cloud_map": mipmapped(gl, with_slopes(thickness_map(clouds, fields, time), side), True)}
+
+
+def with_slopes(thickness: np.ndarray, side: float) -> np.ndarray:
+    """A periodic map (N, N) with its changes per metre to the east and to the north, (N, N, 4)."""
+    texel = side / thickness.shape[0]
+    north, east = ((np.roll(thickness, -1, axis) - np.roll(thickness, 1, axis)) / (2 * texel) for axis in (0, 1))
+    return np.stack([thickness, east, north, np.zeros_like(thickness)], axis=-1)
+
+
+def technique_textures(gl: GL, slot: str, arrays: Mapping[str, np.ndarray]) -> dict[str, AnyTexture]:
+    """A technique's arrays as the samplers `<slot>_<name>`: clamped, linear, in float32 or bytes."""
+    made: dict[str, AnyTexture] = {}
+    for name, array in arrays.items():
+        data = np.ascontiguousarray(array if array.dtype in (np.uint8, np.float16) else array.astype(np.float32))
+        volume = data.ndim == 4 or (data.ndim == 3 and data.shape[2] > 4)
+        made[f"{slot}_{name}"] = gl.texture3d(data) if volume else gl.texture2d(data)
+    return made

@@ -1,0 +1,68 @@
+"""The clouds as plain arrays and numbers, for whoever draws them without the techniques: the reference."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from renderer.clouds.cloud_map import thickness_map
+from renderer.clouds.renderer import cloud_side, drift, globe_axes
+from renderer.clouds.world_scale import LAND_CELL, SYSTEMS_SIDE
+from renderer.core.technique import Arrays
+from renderer.world.sky import SOLAR_CONSTANT
+from renderer.world.sun import direction
+
+if TYPE_CHECKING:
+    from renderer.clouds.state import CloudsState
+
+NEEDS = ("globe", "land", "fields")
+"""Bakes that make the world; the others serve techniques."""
+
+
+def world_arrays(state: CloudsState, baked: Mapping[str, Arrays]) -> dict[str, Any]:
+    """What stands where, and the light it stands in.
+
+    Args:
+        state: the document; techniques and view are no part of the world.
+        baked: arrays of `NEEDS`.
+
+    Returns:
+        By name. Planet: `radius` [m]; `albedo` and `snow_albedo` of the site's ground (3,), `snow_line` [m], `site_size`
+        [m]; `globe` (rows, columns, 3), the Earth's albedo, row 0 at the south pole, column 0 at 180 degrees west, and
+        its axes in the site's, `globe_axes` (3, 3): towards 0 E, 90 E and the pole; `height` (N, N) [m] of the land, row 0
+        at the south, nodes `land_cell` [m] apart round the site. Layer: `base`, `thickness` [m], `extinction` [1/m];
+        `cloud_map` (N, N), thickness as a share of the layer's, row 0 at the south, over a square of `cloud_side` [m]
+        round the site, which `cloud_repeats` or not and has been carried by `cloud_drift` (2,) [m]; `systems` (N, N), a
+        further share, over `systems_side` [m], its corner at the site, repeated. Maps are read at the stereographic
+        place of a point, bilinearly between texels. Light: `sun` (3,), `sun_irradiance` above the air [W m-2], `haze` of
+        the air, and `wide_albedo`, the ground that its multiply scattered light is computed over. `background`, zero:
+        the reference draws the sky itself.
+    """
+    axes = globe_axes(state.planet.latitude, state.planet.longitude)
+    return {
+        "radius": state.planet.radius,
+        "albedo": tuple(state.planet.albedo),
+        "snow_albedo": tuple(state.planet.snow_albedo),
+        "snow_line": state.planet.snow_line,
+        "site_size": state.planet.site_size,
+        "globe": (baked["globe"]["albedo"] / 255.0) ** 2,
+        "globe_axes": np.array([axes["globe_east"], axes["globe_north"], axes["globe_up"]]),
+        "height": baked["land"]["height"],
+        "land_cell": LAND_CELL,
+        "base": state.layer.base,
+        "thickness": state.layer.thickness,
+        "extinction": state.layer.extinction,
+        "cloud_map": thickness_map(state.clouds, baked["fields"], state.time),
+        "cloud_side": cloud_side(state),
+        "cloud_repeats": state.clouds.kind != "asset" or state.clouds.repeats,
+        "cloud_drift": drift(state),
+        "systems": baked["fields"]["systems"],
+        "systems_side": SYSTEMS_SIDE,
+        "sun": tuple(float(v) for v in direction(state.sun)),
+        "sun_irradiance": SOLAR_CONSTANT,
+        "haze": state.air.haze,
+        "wide_albedo": state.air.ground_albedo,
+        "background": lambda directions: np.zeros((len(directions), 3)),
+    }

@@ -1,0 +1,70 @@
+// The ground: the land round the site on the sphere, and the light that it sends back.
+//
+// What a ray finds of it is traced once for all suns. It does not know caves, overhangs or water that mirrors.
+// land_heights  m above the sphere, nodes land_cell apart round the site    globe_albedo  root of the Earth's albedo, by
+// longitude and latitude    land_horizon  elevation (rad) above which each node of the land sees the sun's azimuth
+
+vec2 land_place(vec2 place) {
+    float size = float(textureSize(land_heights, 0).x);
+    return (place / land_cell + 0.5 * size) / size;
+}
+
+float land_height(vec2 place) {
+    return textureLod(land_heights, land_place(place), 0.0).r;
+}
+
+// Distance along a ray to the ground, m; NEVER where it meets none. `footprint`: width of the ray at one metre.
+float ground_distance(Path path, vec3 origin, vec3 direction, float footprint) {
+    float end = sphere_distance(path);
+    if (land_top <= 0.0) return end;
+    // The stretch of the ray between the land's top and the sphere, over the land's square.
+    vec2 roof = path_distances(path, land_top);
+    float half_side = 0.5 * land_cell * float(textureSize(land_heights, 0).x);
+    vec2 to_sides = (sign(direction.xy) * half_side - origin.xy) / (abs(direction.xy) + 1.0e-9) * sign(direction.xy);
+    vec2 from_sides = (-sign(direction.xy) * half_side - origin.xy) / (abs(direction.xy) + 1.0e-9) * sign(direction.xy);
+    float t = max(max(roof.x, 0.0), max(from_sides.x, from_sides.y));
+    float stop = min(min(end, roof.y), min(to_sides.x, to_sides.y));
+    float found = NEVER, before = t, gap_before = 1.0;
+    for (int k = 0; k < LAND_STEPS; k++) {
+        if (t >= stop || found < NEVER) break;
+        vec3 point = origin + t * direction;
+        float gap = path_altitude(path, t) - land_height(place_of(point));
+        if (gap <= 0.0) {
+            found = k == 0 ? t : mix(before, t, gap_before / max(gap_before - gap, 1.0e-6));
+        } else {
+            before = t;
+            gap_before = gap;
+            float descent = -(path.along + t) / (planet_radius + path_altitude(path, t)); // fall per metre of the ray
+            t += max(gap / max(land_steepness + descent, 0.02), max(footprint * t, 0.2 * land_cell));
+        }
+    }
+    return min(found, end);
+}
+
+// Unit normal of the land at a place, in the site's axes turned to the point's own up.
+vec3 land_normal(vec2 place, vec3 up) {
+    vec2 node = vec2(land_cell, 0.0);
+    vec2 rise = vec2(land_height(place + node.xy) - land_height(place - node.xy),
+                     land_height(place + node.yx) - land_height(place - node.yx)) / (2.0 * land_cell);
+    return normalize(up - vec3(rise, 0.0));
+}
+
+// Albedo of the ground at a point: the site's near by, the Earth's far away, snow above its line.
+vec3 ground_albedo(vec3 point, vec3 up, vec2 place, float altitude, float footprint) {
+    vec3 earth = vec3(dot(up, globe_east), dot(up, globe_north), dot(up, globe_up)); // x to 0 E on the equator, z to the pole
+    vec2 at = vec2(atan(earth.y, earth.x) / (2.0 * AIR_PI) + 0.5, asin(clamp(earth.z, -1.0, 1.0)) / AIR_PI + 0.5);
+    float texel = 2.0 * AIR_PI * planet_radius / float(textureSize(globe_albedo, 0).x);
+    vec3 wide = textureLod(globe_albedo, at, log2(max(footprint / texel, 1.0))).rgb;
+    float site = 1.0 - smoothstep(0.8, 1.2, length(place) / planet_site_size);
+    vec3 near = mix(planet_albedo, planet_snow_albedo, smoothstep(-60.0, 60.0, altitude - planet_snow_line));
+    return mix(wide * wide, near, site);
+}
+
+// Share of the sun's disc that the land leaves to its nodes; mu: the sun's zenith cosine.
+float land_sees_sun(vec2 place, float mu) {
+    float elevation = asin(clamp(mu, -1.0, 1.0));
+    float horizon = textureLod(land_horizon, land_place(place), 0.0).r;
+    vec2 inside = step(abs(land_place(place) - 0.5), vec2(0.5));
+    float t = clamp((elevation - horizon) / (2.0 * SUN_RADIUS) + 0.5, 0.0, 1.0);
+    return mix(1.0, t * t * (3.0 - 2.0 * t), inside.x * inside.y);
+}

@@ -1,0 +1,35 @@
+// The layer's thickness, and the shadow it casts on the air below.
+//
+// cloud_map      r: thickness as a share of the layer's, gb: how it grows east and north per metre; the moment's
+// cloud_systems  share of that which the weather systems leave
+// A footprint chooses the mip level: thickness is averaged before light is computed, so a distant broken layer is a thin one.
+
+struct Cover {
+    float thickness; // m
+    vec2 slope;      // rise of the upper side over run, to the east and to the north
+};
+
+// place: m from the site. footprint: m, over which it is seen.
+Cover cover_at(vec2 place, float footprint) {
+    vec2 at = (place - cloud_drift) / cloud_side;
+    float texel = cloud_side / float(textureSize(cloud_map, 0).x);
+    vec3 found = textureLod(cloud_map, at + 0.5, log2(max(footprint / texel, 1.0))).rgb;
+    float inside = cloud_repeats > 0.5 ? 1.0 : float(max(abs(at.x), abs(at.y)) < 0.5);
+    float wide = cloud_systems_side / float(textureSize(cloud_systems, 0).x);
+    float systems = textureLod(cloud_systems, (place - cloud_drift) / cloud_systems_side, log2(max(footprint / wide, 1.0))).r;
+    return Cover(layer_thickness * inside * systems * found.r, layer_thickness * inside * systems * found.gb);
+}
+
+float slab_diffuse_share(float optical_depth) {
+    return 1.0 / (1.0 + 0.11 * optical_depth);
+}
+
+// Share of the light that the layer leaves to the air at a point below it: Eddington's, for even light and g = 0.85.
+// mu: the sun's zenith cosine there. A point that the sun reaches from below the layer keeps it all.
+float air_lit(vec3 point, float altitude, float mu) {
+    float rise = layer_base + 0.5 * layer_thickness - altitude;
+    float slant = rise / max(mu, 0.05);
+    Cover cover = cover_at(place_of(point + sun_direction * slant), 2000.0);
+    float share = slab_diffuse_share(layer_extinction * cover.thickness / max(mu, 0.2) * 0.5);
+    return rise > 0.0 ? mix(1.0, share, clamp(10.0 * mu + 0.5, 0.0, 1.0)) : 1.0;
+}
