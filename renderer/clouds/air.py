@@ -19,7 +19,8 @@ BEAM = (64, 256)
 """Heights and directions of the table of sunlight."""
 
 MARGIN = 0.01
-"""How far below the horizon it goes on, where the sun's disc is still half up; AIR_MARGIN of shaders/clouds/air.glsl."""
+"""How far below the horizon it goes on, where the sun's disc is still half up; AIR_MARGIN of
+shaders/clouds/air.glsl."""
 
 
 def bake_air(
@@ -33,9 +34,9 @@ def bake_air(
         arguments: an `Atmosphere` as a document.
 
     Returns:
-        `beam` (heights, directions, 3), share of the sun's light that arrives: row j at the height 100 km (j/63)^2, column
-        i where the zenith cosine is c = (1 + MARGIN) (i/255)^2 - MARGIN of the way from the horizon's to 1; `glow`
-        (heights, suns, 3), radiance of light scattered twice or more, W m-2 sr-1, axes as in
+        `beam` (heights, directions, 3), share of the sun's light that arrives: row j at the height 100 km (j/63)^2,
+        column i where the zenith cosine is c = (1 + MARGIN) (i/255)^2 - MARGIN of the way from the horizon's to 1;
+        `glow` (heights, suns, 3), radiance of light scattered twice or more, W m-2 sr-1, axes as in
         `renderer.world.atmosphere`; float32.
     """
     progress(0.0, "optical depths and multiple scattering")

@@ -1,7 +1,8 @@
 """Where the layer is thick and where it is thin: fields that are drawn once, and the map that they make at a moment.
 
-A map holds the thickness as a share of the layer's own: 1 in the mean of a closed layer, 0 where the sky is open. Two fields
-of the same statistics turn into each other, f(t) = A cos(w t) + B sin(w t): clouds come and go, and their cover stays.
+A map holds the thickness as a share of the layer's own: 1 in the mean of a closed layer, 0 where the sky is open. Two
+fields of the same statistics turn into each other, f(t) = A cos(w t) + B sin(w t): clouds come and go, and their
+cover stays.
 
 Stratus is noise with a power spectrum k^-3 to k^-4 (Cahalan and Snider 1989 measured k^-3.3 in two dimensions for
 stratocumulus' liquid water); stratocumulus has closed cells besides, the distances to scattered points (Worley 1996).
@@ -44,8 +45,8 @@ def bake_fields(arguments: dict[str, Any], inputs: dict[str, Arrays], progress: 
 
     Returns:
         `fields` (2, N, N) float32 of mean 0 and variance 1, both periodic, or (1, N, N) for a user's map;
-        `systems` (N, N) float32 in [0, 1], the cover of the weather systems, periodic, 1 at its corner; `reach` (), bound of
-        what the fields can be at any moment.
+        `systems` (N, N) float32 in [0, 1], the cover of the weather systems, periodic, 1 at its corner; `reach` (),
+        bound of what the fields can be at any moment.
     """
     kind = arguments["kind"]
     progress(0.1, "drawing the clouds")
@@ -95,8 +96,8 @@ def _power_noise(rng: np.random.Generator, texels: int, slope: float, longest: f
 
 
 def _cells(rng: np.random.Generator, texels: int, count: int, size: float) -> np.ndarray:
-    """How far inside a closed cell each texel lies, (N, N): less its distance to the nearest of `count` points, on a ground
-    that noise as large as a cell, `size` texels, has bent."""
+    """How far inside a closed cell each texel lies, (N, N): less its distance to the nearest of `count` points, on a
+    ground that noise as large as a cell, `size` texels, has bent."""
     tree = cKDTree(rng.random((count, 2)), boxsize=1.0)
     grid = (np.arange(texels) + 0.5) / texels
     bend = np.stack([_power_noise(rng, texels, 3.6, size) for _ in range(2)], axis=-1)

@@ -1,8 +1,8 @@
 """The whole Earth's albedo, for what lies beyond the site's own ground: coasts as they are, colours by climate.
 
-`land.png` is the share of land in each quarter of a degree (1440 x 720, row 0 at the north pole, column 0 at 180 degrees
-west), averaged from the GLOBE elevation model's mask at 30 seconds of arc (GLOBE Task Team 1999, public domain; packed by
-T. Karin 2019, global-land-mask, MIT licence).
+`land.png` is the share of land in each quarter of a degree (1440 x 720, row 0 at the north pole, column 0 at 180
+degrees west), averaged from the GLOBE elevation model's mask at 30 seconds of arc (GLOBE Task Team 1999, public
+domain; packed by T. Karin 2019, global-land-mask, MIT licence).
 
 Deviations: the colours are no survey. Land is forest, steppe, desert, tundra or ice by its latitude and by eleven known
 deserts; seasons, soils and cities are left out.
@@ -36,8 +36,8 @@ DESERTS = (
     (40.0, 62.0, 6.0, 9.0), (42.0, 100.0, 6.0, 18.0), (-25.0, 128.0, 8.0, 14.0), (-23.0, 19.0, 7.0, 5.0),
     (34.0, -112.0, 7.0, 6.0), (-23.0, -69.0, 9.0, 2.5), (-44.0, -69.0, 7.0, 3.0),
 )  # fmt: skip
-"""Sahara (west, east), Arabia, Iran, Karakum, Gobi, Australia, Namib and Kalahari, Sonora and Mojave, Atacama, Patagonia:
-latitude and longitude of the middle and half the extent along each, degrees."""
+"""Sahara (west, east), Arabia, Iran, Karakum, Gobi, Australia, Namib and Kalahari, Sonora and Mojave, Atacama,
+Patagonia: latitude and longitude of the middle and half the extent along each, degrees."""
 
 
 def bake_globe(

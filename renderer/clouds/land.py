@@ -27,8 +27,8 @@ def bake_land(arguments: dict[str, Any], inputs: dict[str, Arrays], progress: Ca
 
     Returns:
         `height` (N, N) float32 [m], row 0 the SOUTHERN edge, nodes `LAND_CELL` apart around the site, 0 at the edge;
-        `top` () the highest [m] and `steepness` () the greatest rise over run; `horizon` (A, N / 2, N / 2) float32 [rad], the elevation of the land's
-        horizon towards A azimuths clockwise from north, at the means of 2 x 2 nodes.
+        `top` () the highest [m] and `steepness` () the greatest rise over run; `horizon` (A, N / 2, N / 2) float32
+        [rad], the elevation of the land's horizon towards A azimuths clockwise from north, at the means of 2 x 2 nodes.
     """
     progress(0.1, "reading the land")
     height = np.zeros((LAND_NODES, LAND_NODES)) if arguments["kind"] == "flat" else _square(arguments)

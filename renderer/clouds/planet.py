@@ -26,7 +26,7 @@ class Layer(Model):
         0.05,
         label="Extinction",
         help="Share of light that a metre of cloud takes from a beam; 0.05 is a mean free path of 20 m.",
-        unit="1/m",
+        unit="m-1",
         ge=0,
         le=0.3,
         step=0.005,
@@ -40,7 +40,7 @@ class Layer(Model):
         ge=0,
         le=1,
     )
-    wind: float = param(8.0, label="Wind", help="Speed at which it drifts.", unit="m/s", cost="host", ge=0, le=80)
+    wind: float = param(8.0, label="Wind", help="Speed at which it drifts.", unit="m s-1", cost="host", ge=0, le=80)
     wind_azimuth: float = param(
         70.0, label="Wind to", help="Where it drifts, from north by east.", unit="deg", cost="host", ge=-360, le=360
     )
@@ -63,19 +63,37 @@ class ProceduralClouds(Model):
         0.9, label="Cover", help="Share of the sky that they close.", unit="ratio", cost="host", ge=0, le=1, step=0.01
     )
     variation: float = param(
-        0.35, label="Variation", help="How much the thickness varies inside a cloud.", unit="ratio", cost="host", ge=0, le=1
+        0.35,
+        label="Variation",
+        help="How much the thickness varies inside a cloud.",
+        unit="ratio",
+        cost="host",
+        ge=0,
+        le=1,
     )
     cell_size: float = param(
         2500.0, label="Size of the cells", help="Distance from cloud to cloud.", unit="m", cost="bake", ge=500, le=20000
     )
     side: float = param(
-        64000.0, label="Period", help="Side of the square after which the map repeats.", unit="m", cost="bake", ge=8000, le=256000
+        64000.0,
+        label="Period",
+        help="Side of the square after which the map repeats.",
+        unit="m",
+        cost="bake",
+        ge=8000,
+        le=256000,
     )
     systems: bool = param(
         True, label="Weather systems", help="Open and closed skies over thousands of kilometres.", cost="bake"
     )
     evolution: float = param(
-        1.0, label="Evolution", help="How fast clouds come and go as time runs; 0 lets them drift only.", unit="ratio", cost="host", ge=0, le=10
+        1.0,
+        label="Evolution",
+        help="How fast clouds come and go as time runs; 0 lets them drift only.",
+        unit="ratio",
+        cost="host",
+        ge=0,
+        le=10,
     )
     seed: int = param(3, label="Seed", help="Of the clouds' places.", cost="bake", ge=0, le=2**31 - 1)
 
@@ -85,10 +103,20 @@ class UserClouds(Model):
 
     kind: Literal["asset"] = "asset"
     asset: str = param(
-        ..., label="File", help="An uploaded picture, raster or array `thickness`, as asset:HASH.", cost="bake", pattern=ASSET
+        ...,
+        label="File",
+        help="An uploaded picture, raster or array `thickness`, as asset:HASH.",
+        cost="bake",
+        pattern=ASSET,
     )
     side: float = param(
-        64000.0, label="Side", help="Width of the square that it covers, around the site.", unit="m", cost="host", ge=1000, le=2e7
+        64000.0,
+        label="Side",
+        help="Width of the square that it covers, around the site.",
+        unit="m",
+        cost="host",
+        ge=1000,
+        le=2e7,
     )
     full: float = param(
         0.0,
@@ -157,12 +185,22 @@ class Planet(Model):
     latitude: float = param(36.5, label="Latitude", help="Of the site.", unit="deg", cost="host", ge=-90, le=90)
     longitude: float = param(-84.2, label="Longitude", help="Of the site.", unit="deg", cost="host", ge=-180, le=180)
     albedo: Colour = param(
-        (0.06, 0.085, 0.04), label="Ground albedo", help="Around the site, below the snow.", source="Oke 1987, table 1.1"
+        (0.06, 0.085, 0.04),
+        label="Ground albedo",
+        help="Around the site, below the snow.",
+        source="Oke 1987, table 1.1",
     )
     snow_line: float = param(
-        9000.0, label="Snow line", help="Height above which snow lies, above the site's lowest point.", unit="m", ge=-100, le=9000
+        9000.0,
+        label="Snow line",
+        help="Height above which snow lies, above the site's lowest point.",
+        unit="m",
+        ge=-100,
+        le=9000,
     )
-    snow_albedo: Colour = param((0.82, 0.84, 0.86), label="Snow albedo", help="Reflectance of snow.", source="Oke 1987, table 1.1")
+    snow_albedo: Colour = param(
+        (0.82, 0.84, 0.86), label="Snow albedo", help="Reflectance of snow.", source="Oke 1987, table 1.1"
+    )
     site_size: float = param(
         60000.0,
         label="Size of the site",

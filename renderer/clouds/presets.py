@@ -34,7 +34,14 @@ PRESETS = {
         "The Earth from space",
         "Day and night from 20,000 km.",
         {
-            "camera": {"kind": "orbit", "target": [0, 0, -6.35e6], "distance": 2.6e7, "azimuth": 180, "elevation": 70, "field_of_view": 32},
+            "camera": {
+                "kind": "orbit",
+                "target": [0, 0, -6.35e6],
+                "distance": 2.6e7,
+                "azimuth": 180,
+                "elevation": 70,
+                "field_of_view": 32,
+            },
             "sun": _sun(110, 40),
             "layer": {"thickness": 250.0},
         },

@@ -149,4 +149,9 @@ def technique_declarations(slot: str, technique: type[CloudsTechnique]) -> list[
 
 
 def _limits() -> dict[str, str | int]:
-    return {"LAND_STEPS": LAND_STEPS, "AIR_STEPS": AIR_STEPS, "AIR_CEILING": repr(AIR_TOP), "AIR_SLICES": f"{AIR_SLICES}.0"}
+    return {
+        "LAND_STEPS": LAND_STEPS,
+        "AIR_STEPS": AIR_STEPS,
+        "AIR_CEILING": repr(AIR_TOP),
+        "AIR_SLICES": f"{AIR_SLICES}.0",
+    }

@@ -38,12 +38,14 @@ def cosine_place(mu: np.ndarray) -> np.ndarray:
 
 def look_up(table: np.ndarray, *places: np.ndarray) -> np.ndarray:
     """A table at fractional entries of its first axes, linearly between entries along each."""
-    found = np.zeros(np.broadcast(*places).shape + table.shape[len(places):])
+    found = np.zeros(np.broadcast(*places).shape + table.shape[len(places) :])
     lows = [np.minimum(place.astype(int), count - 2) for place, count in zip(places, table.shape)]
     for corner in np.ndindex(*(2,) * len(places)):
         weight = np.ones(np.broadcast(*places).shape)
         for place, low, upper in zip(places, lows, corner):
             weight = weight * (place - low if upper else 1 - (place - low))
-        found += weight.reshape(weight.shape + (1,) * (table.ndim - len(places))) * table[
-            tuple(low + upper for low, upper in zip(lows, corner))]
+        found += (
+            weight.reshape(weight.shape + (1,) * (table.ndim - len(places)))
+            * table[tuple(low + upper for low, upper in zip(lows, corner))]
+        )
     return found

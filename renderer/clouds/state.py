@@ -27,7 +27,8 @@ def _slot(name: str, title: str, help_text: str) -> Any:
 
 
 class CloudsState(SceneState):
-    """State of the clouds: where one looks from, the sun, the planet, its layer of clouds, and one technique per slot."""
+    """State of the clouds: where one looks from, the sun, the planet, its layer of clouds, and one technique per
+    slot."""
 
     scene: Literal["clouds"] = "clouds"
     camera: Camera = param(
@@ -44,15 +45,21 @@ class CloudsState(SceneState):
     planet: Planet = param(Planet(), label="Planet", help="The sphere, the site and its ground.")
     land: Land = param(BuiltInLand(), label="Land", help="The land round the site.", cost="bake")
     air: Atmosphere = param(Atmosphere(haze=4.0), label="Air", help="What sun and sky shine through.", cost="bake")
-    geometry: slot_union("clouds", "geometry") = _slot("geometry", "Geometry", "How long a ray runs through the layer.")  # type: ignore[valid-type]
-    phase: slot_union("clouds", "phase") = _slot("phase", "Phase function", "Where a droplet sends light.")  # type: ignore[valid-type]
+    geometry: slot_union("clouds", "geometry") = _slot(  # type: ignore[valid-type]
+        "geometry", "Geometry", "How long a ray runs through the layer."
+    )
+    phase: slot_union("clouds", "phase") = _slot(  # type: ignore[valid-type]
+        "phase", "Phase function", "Where a droplet sends light."
+    )
     scattering: slot_union("clouds", "scattering") = _slot(  # type: ignore[valid-type]
         "scattering", "Scattering", "What the layer makes of the light."
     )
     cloud_shadow: slot_union("clouds", "cloud_shadow") = _slot(  # type: ignore[valid-type]
         "cloud_shadow", "Cloud shadow", "What the layer leaves to the ground."
     )
-    bounce: slot_union("clouds", "bounce") = _slot("bounce", "Bounce", "Light between ground and clouds.")  # type: ignore[valid-type]
+    bounce: slot_union("clouds", "bounce") = _slot(  # type: ignore[valid-type]
+        "bounce", "Bounce", "Light that goes between ground and clouds."
+    )
 
     def techniques(self) -> dict[str, Any]:
         """The chosen technique of each slot."""

@@ -12,7 +12,9 @@ from pydantic_core import CoreSchema
 Cost = Literal["live", "build", "bake", "host"]
 """What a change of the parameter costs: the next frame, a recompilation, a precomputation, or nothing on the GPU."""
 
-Unit = Literal["", "um", "m", "km", "deg", "s", "h", "m-1", "ratio", "px", "EV", "W m-2", "date", "count", "voxel"]
+Unit = Literal[
+    "", "um", "m", "km", "deg", "s", "h", "m s-1", "m-1", "ratio", "px", "EV", "W m-2", "date", "count", "voxel"
+]
 
 Component = Annotated[float, Field(allow_inf_nan=False)]
 Fraction = Annotated[float, Field(ge=0, le=1, allow_inf_nan=False)]

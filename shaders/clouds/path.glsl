@@ -16,18 +16,22 @@ struct Path {
     float altitude; // of the origin, m
 };
 
+// A number that a compiler cannot see through: it would take (a + b) - a for b, and the rounding error for nothing.
+float rounded(float x) {
+    return intBitsToFloat(floatBitsToInt(x) ^ int(planet_radius < 0.0));
+}
+
 // Sum and its rounding error (Knuth 1969).
 vec2 two_sum(float a, float b) {
-    float s = a + b;
-    float v = s - a;
+    float s = rounded(a + b);
+    float v = rounded(s - a);
     return vec2(s, (a - (s - v)) + (b - v));
 }
 
-// Product and its rounding error (Dekker 1971).
+// Product and its rounding error (Dekker 1971), each factor cut into its upper twelve bits and the rest.
 vec2 two_product(float a, float b) {
-    float p = a * b;
-    vec2 high = vec2(a, b) * 4097.0;
-    high -= high - vec2(a, b);
+    float p = rounded(a * b);
+    vec2 high = intBitsToFloat(floatBitsToInt(vec2(a, b)) & ivec2(0xfffff000));
     vec2 low = vec2(a, b) - high;
     return vec2(p, ((high.x * high.y - p) + high.x * low.y + low.x * high.y) + low.x * low.y);
 }

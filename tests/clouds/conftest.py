@@ -71,7 +71,9 @@ def _asked(
     state = SimpleNamespace(**techniques)
     arrays: dict[str, Arrays] = {}
     text, given, macros = [declarations], dict(values or {}), {}
-    held = {name: gl.texture2d(np.asarray(array, np.float32), wrap="repeat") for name, array in (pictures or {}).items()}
+    held = {
+        name: gl.texture2d(np.asarray(array, np.float32), wrap="repeat") for name, array in (pictures or {}).items()
+    }
     for technique in techniques.values():
         for bake in technique.bakes(state):
             arrays[bake.name] = baked(bake)
@@ -85,8 +87,17 @@ def _asked(
         macros |= defines(technique, slot)
         shaders += [*technique.includes, glsl_file("clouds", slot, technique.kind)]
     try:
-        return probe(gl, shaders, body, inputs, outputs, uniforms=given, textures=held,
-                     declarations="\n".join(text), defines=macros)
+        return probe(
+            gl,
+            shaders,
+            body,
+            inputs,
+            outputs,
+            uniforms=given,
+            textures=held,
+            declarations="\n".join(text),
+            defines=macros,
+        )
     finally:
         for texture in held.values():
             texture.release()

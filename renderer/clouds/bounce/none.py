@@ -11,7 +11,9 @@ class NoBounce(CloudsTechnique):
     """The clouds' base sees a black ground, and the ground nothing that comes back."""
 
     title: ClassVar[str] = "None"
-    caption: ClassVar[str] = "No light goes back and forth: the clouds' base is dark, snow or not. The zero of the bounces."
+    caption: ClassVar[str] = (
+        "No light goes back and forth: the clouds' base is dark, snow or not. The zero of the bounces."
+    )
     paper: ClassVar[str] = "-"
 
     kind: Literal["none"] = "none"

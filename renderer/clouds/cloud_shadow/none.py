@@ -11,7 +11,9 @@ class NoCloudShadow(CloudsTechnique):
     """The ground as under a clear sky."""
 
     title: ClassVar[str] = "None"
-    caption: ClassVar[str] = "Sun and sky reach the ground as if there were no clouds. The zero against which shadows are judged."
+    caption: ClassVar[str] = (
+        "Sun and sky reach the ground as if there were no clouds. The zero against which shadows are judged."
+    )
     includes: ClassVar[tuple[str, ...]] = ("clouds/shade.glsl",)
     paper: ClassVar[str] = "-"
 

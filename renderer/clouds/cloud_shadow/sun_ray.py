@@ -11,7 +11,9 @@ class SunRay(CloudsTechnique):
     """The layer's transmittance where the sun's ray crosses it."""
 
     title: ClassVar[str] = "Sun ray"
-    caption: ClassVar[str] = "The layer's transmittance where the way to the sun crosses it; scattered light comes from overhead."
+    caption: ClassVar[str] = (
+        "The layer's transmittance where the way to the sun crosses it; scattered light comes from overhead."
+    )
     includes: ClassVar[tuple[str, ...]] = ("clouds/shade.glsl",)
     paper: ClassVar[str] = "Belcour 2009, section 3.3.1"
 

@@ -11,7 +11,9 @@ class Flat(CloudsTechnique):
     """The layer as a flat slab where a ray meets it: thickness over cosine."""
 
     title: ClassVar[str] = "Flat"
-    caption: ClassVar[str] = "Thickness over cosine: right to a few per cent but at the limb, where the path grows without end."
+    caption: ClassVar[str] = (
+        "Thickness over cosine: right to a few per cent but at the limb, where the path grows without end."
+    )
     paper: ClassVar[str] = "Bouthors, Neyret and Lefebvre 2006; Belcour 2009, section 4.2.4"
 
     kind: Literal["flat"] = "flat"

@@ -1,5 +1,6 @@
 // Apparent thickness of a flat slab. Bouthors, Neyret and Lefebvre 2006; Belcour 2009, section 4.2.4.
 //
+// Symbols: h thickness (m); cos = mu, cosine (-), cosine of the ray to the outward normal where it meets the layer.
 // h / cos: a ray that grazes the layer has a path that grows without end, where the sphere's ends at 36 km for 100 m.
 // Deviations: where a ray meets the layer is still found on the sphere, or there would be no horizon; a path is no longer than
 // FLAT_LONGEST, or a division by zero would follow.

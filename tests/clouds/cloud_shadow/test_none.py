@@ -20,5 +20,9 @@ def test_sun_and_sky_are_whole(ask: Ask) -> None:
 
 
 def test_a_shade_is_found(ask: Ask, spoil: Callable) -> None:
-    with spoil("clouds/cloud_shadow/none.glsl", "Shade(vec3(1.0), vec3(0.0), vec3(1.0))", "Shade(vec3(0.5), vec3(0.0), vec3(1.0))"):
+    with spoil(
+        "clouds/cloud_shadow/none.glsl",
+        "Shade(vec3(1.0), vec3(0.0), vec3(1.0))",
+        "Shade(vec3(0.5), vec3(0.0), vec3(1.0))",
+    ):
         assert abs(shade(ask, NoCloudShadow(), EAST, 40.0, "direct") - 1).min() > 0.4

@@ -38,10 +38,13 @@ def test_scattered_light_comes_from_overhead(ask: Ask) -> None:
     assert found[0] < 1e-3 < found[1]
 
 
-@pytest.mark.parametrize(("right", "wrong"), [
-    ("point + way * sun_direction", "point - way * sun_direction"),
-    ("max(layer_base + 0.5 * layer_thickness - altitude, 0.0)", "max(0.5 * layer_base - altitude, 0.0)"),
-])
+@pytest.mark.parametrize(
+    ("right", "wrong"),
+    [
+        ("point + way * sun_direction", "point - way * sun_direction"),
+        ("max(layer_base + 0.5 * layer_thickness - altitude, 0.0)", "max(0.5 * layer_base - altitude, 0.0)"),
+    ],
+)
 def test_a_shadow_in_the_wrong_place_is_found(ask: Ask, spoil: Callable, right: str, wrong: str) -> None:
     with spoil("clouds/cloud_shadow/sun_ray.glsl", right, wrong):
         assert error(ask, 45.0) > 0.3

@@ -15,8 +15,15 @@ HEIGHT = TOP - BASE
 
 
 def through(ask: Ask, body: str, inputs: dict[str, np.ndarray]) -> np.ndarray:
-    return ask({"geometry": Flat()}, body, inputs, 1, files=["clouds/path.glsl"], values={"planet_radius": RADIUS},
-               declarations=DECLARED)[..., 0]
+    return ask(
+        {"geometry": Flat()},
+        body,
+        inputs,
+        1,
+        files=["clouds/path.glsl"],
+        values={"planet_radius": RADIUS},
+        declarations=DECLARED,
+    )[..., 0]
 
 
 def test_thickness_over_cosine(ask: Ask) -> None:
@@ -52,7 +59,10 @@ def test_it_explodes_at_the_limb(ask: Ask) -> None:
 
 def test_a_sine_in_the_cosine_s_place_is_found(ask: Ask, spoil: Callable) -> None:
     mu = np.array([0.2])
-    with spoil("clouds/geometry/flat.glsl", "return min(thickness / max(abs(mu), 1.0e-20), FLAT_LONGEST);",
-               "return min(thickness / sqrt(1.0 - mu * mu), FLAT_LONGEST);"):
+    with spoil(
+        "clouds/geometry/flat.glsl",
+        "return min(thickness / max(abs(mu), 1.0e-20), FLAT_LONGEST);",
+        "return min(thickness / sqrt(1.0 - mu * mu), FLAT_LONGEST);",
+    ):
         found = through(ask, f"geometry_slant(mu, {BASE}, {HEIGHT})", {"mu": mu})
     assert abs(found[0] * mu[0] / HEIGHT - 1) > 0.5
