@@ -72,4 +72,5 @@ PHENOMENON = Phenomenon(
     world_needs=NEEDS,
     metered_light=_metered_light,
     probe=probe,
+    place=1,
 )

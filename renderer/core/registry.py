@@ -57,12 +57,13 @@ def slot_union(phenomenon: str, slot: str) -> Any:
 
 @functools.cache
 def phenomena() -> dict[str, Phenomenon]:
-    """Every phenomenon of the checkout by name: each package `renderer/<name>/phenomenon.py` with its `PHENOMENON`."""
+    """Every phenomenon of the checkout by name, in their own order: each package `renderer/<name>/phenomenon.py` with its
+    `PHENOMENON`."""
     found = {}
     for entry in sorted(Path(renderer.__file__).parent.iterdir()):
         if (entry / "phenomenon.py").is_file():
             found[entry.name] = importlib.import_module(f"renderer.{entry.name}.phenomenon").PHENOMENON
-    return found
+    return dict(sorted(found.items(), key=lambda item: item[1].place))
 
 
 def phenomenon(name: str) -> Phenomenon:

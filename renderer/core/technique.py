@@ -114,7 +114,7 @@ class Phenomenon:
     """One of the four systems.
 
     Attributes:
-        name: as in the document's `scene`.
+        name: as in the document's `scene`. place: among the scenes; the page opens on the first.
         state: the pydantic model of its whole state document.
         presets: named patches of the default document, with a title each.
         combinations: named patches of the slots alone, which leave view and world as they are.
@@ -141,6 +141,7 @@ class Phenomenon:
     metered_light: Callable[[Any, Mapping[str, Arrays]], float]
     probe: Callable[[Any, Mapping[str, Arrays], float, float, tuple[int, int]], dict[str, Any]]
     combinations: Mapping[str, Preset] = field(default_factory=dict)
+    place: int = 0
 
 
 @dataclass(frozen=True)
