@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from renderer.core.params import bake_arguments
 from renderer.core.technique import Bake
 from renderer.forest.canopy_horizon import bake_canopy_horizon
 from renderer.forest.ground import bake_ground
+from renderer.forest.nursery import listed
 from renderer.forest.pattern import bake_pattern
 from renderer.forest.soft_horizon import bake_soft_horizon
 from renderer.forest.terrain_horizon import bake_terrain_horizon
@@ -19,7 +20,9 @@ if TYPE_CHECKING:
 
 def ground_bake(state: ForestState) -> Bake:
     """Heights and forest cover over the square."""
-    arguments = {"terrain": bake_arguments(state.terrain), "cover": bake_arguments(state.cover)}
+    arguments: dict[str, Any] = {"terrain": bake_arguments(state.terrain), "cover": bake_arguments(state.cover)}
+    if state.cover.species_map:
+        arguments["planted"] = listed(bake_arguments(state.canopy))
     # Only a canopy height model asks how tall the pattern's own trees are.
     inputs = (pattern_bake(state),) if state.cover.local_heights else ()
     return Bake("terrain", bake_ground, arguments, inputs, version=3, seconds=1)
@@ -27,7 +30,8 @@ def ground_bake(state: ForestState) -> Bake:
 
 def pattern_bake(state: ForestState) -> Bake:
     """The texture-cell atlas."""
-    return Bake("pattern", bake_pattern, bake_arguments(state.canopy), version=10, seconds=16)
+    apart = {"apart": True} if state.cover.species_map else {}
+    return Bake("pattern", bake_pattern, bake_arguments(state.canopy) | apart, version=10, seconds=16)
 
 
 def terrain_horizon_bake(terrain: Bake, sectors: int) -> Bake:

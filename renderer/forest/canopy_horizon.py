@@ -12,6 +12,7 @@ import numpy as np
 from numba import njit
 
 from renderer.core.technique import Arrays
+from renderer.forest.species_alone import each_section, opacities
 from renderer.forest.terrain_horizon import sector_range
 from renderer.forest.tiles import RHOMBI, lattice
 from renderer.forest.world_scale import CANOPY_HEIGHT, TILE_SIDE
@@ -74,13 +75,24 @@ def bake_canopy_horizon(
 
     Returns:
         `sectors` float32 [heights, chi, J, I] [rad] from the horizontal, row j along v, column i along u; sector k is
-        centred at WORLD azimuth 2 pi k / chi from north. At least 0, for the canopy goes on without end.
+        centred at WORLD azimuth 2 pi k / chi from north. At least 0, for the canopy goes on without end. Of several
+        sections, the heights of one after those of the other.
 
     Source: Cohen 2004, section 3.1. The neighbours are those of the atlas; on the map they are others of the same
     make.
     """
     sectors, heights = int(arguments["sectors"]), [float(height) for height in arguments["heights"]]
-    opacity = inputs["pattern"]["colour"][..., 3].astype(np.float32) / np.float32(255)
+
+    def one(alpha: np.ndarray, tell: Callable[[float], None]) -> np.ndarray:
+        return _horizons(alpha, sectors, heights, tell)
+
+    words = "searching the canopy's horizon"
+    return {"sectors": each_section(opacities(inputs["pattern"]), one, lambda share: progress(share, words))}
+
+
+def _horizons(alpha: np.ndarray, sectors: int, heights: list[float], progress: Callable[[float], None]) -> np.ndarray:
+    """The horizons [heights, chi, J, I] [rad] of a canopy of opacity (K, J, I) uint8."""
+    opacity = alpha.astype(np.float32) / np.float32(255)
     tops = solid_tops(opacity, CANOPY_HEIGHT / len(opacity))
     voxel = TILE_SIDE * RHOMBI / tops.shape[1]
     to_index = np.linalg.inv(lattice(voxel))
@@ -98,8 +110,8 @@ def bake_canopy_horizon(
     members = [set(sector_range(sector, sectors, AZIMUTHS).tolist()) for sector in range(sectors)]
     with ThreadPoolExecutor(os.cpu_count() or 1) as pool:
         for done, (level, number, slopes) in enumerate(pool.map(one, jobs)):
-            progress(done / len(jobs), "searching the canopy's horizon")
+            progress(done / len(jobs))
             for sector in range(sectors):
                 if number in members[sector]:
                     np.maximum(result[level, sector], slopes, out=result[level, sector])
-    return {"sectors": np.arctan(result, out=result)}
+    return np.arctan(result, out=result)

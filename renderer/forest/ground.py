@@ -12,7 +12,8 @@ from scipy.ndimage import gaussian_filter
 from renderer.core.cache import AssetStore
 from renderer.core.errors import InputError
 from renderer.core.technique import Arrays
-from renderer.forest.stand_maps import density_map, sunward, survey
+from renderer.forest.planting import mixed_share
+from renderer.forest.stand_maps import density_map, species_map, sunward, survey
 from renderer.forest.world_scale import CELL, NODES, PRESENCE_SIDE, STAND_TOP
 from renderer.world.maps import spread
 from renderer.world.terrain import DEFAULT_CENTRE, Terrain, TerrainReading, crop, default_terrain, load_terrain
@@ -99,12 +100,14 @@ def bake_ground(arguments: dict[str, Any], inputs: dict[str, Arrays], progress: 
     """Elevation above the square's lowest point, cover, and that point's own elevation.
 
     Args:
-        arguments: `terrain` and `cover`, as in the document. inputs: `pattern`, where a canopy height model is given.
+        arguments: `terrain` and `cover`, as in the document; with a species map, `planted` (`nursery.listed`).
+        inputs: `pattern`, where a canopy height model is given.
 
     Returns:
         `elevation` (N, N) float32 [m], `cover` (N, N) float32, `surface` (N, N) float32 [m] with the stands' tops,
         `presence` (P, P) uint8, the share of the pattern's trees that stand there, of 255; `growth` (N, N) float32,
-        their height against the pattern's; `base` () float64 [m]; row 0 is the northern edge.
+        their height against the pattern's; `base` () float64 [m]; with a species map, `species` (P, P) uint8 and
+        `sections` (BANDS + 1,) uint8, which of the pattern's each number has; row 0 is the northern edge.
     """
     progress(0.1, "reading the terrain")
     terrain, land = square(arguments["terrain"])
@@ -125,6 +128,15 @@ def bake_ground(arguments: dict[str, Any], inputs: dict[str, Arrays], progress: 
         progress(0.8, "reading the density map")
         presence = presence * density_map(rules)
         cover = _rimmed(np.minimum(cover, _half(presence)), RIM).astype(np.float32)
+    species = {}
+    if rules["species_map"]:
+        progress(0.9, "reading the species map")
+        planted = np.array(list(arguments["planted"].values()), int)
+        species = {
+            "species": species_map(rules, arguments["planted"]),
+            "sections": np.append(0, np.cumsum(planted) * planted).astype(np.uint8),
+        }
+        presence = presence * np.where(species["species"] > 0, 1.0, mixed_share(planted.sum()))
     surface = elevation + np.float32(STAND_TOP) * growth * (cover > 0.5)
     return {
         "elevation": elevation,
@@ -132,6 +144,7 @@ def bake_ground(arguments: dict[str, Any], inputs: dict[str, Arrays], progress: 
         "surface": surface,
         "presence": np.rint(255 * _rimmed(presence, RIM * PRESENCE_SIDE // NODES)).astype(np.uint8),
         "growth": growth,
+        **species,
         "base": np.array(base),
     }
 

@@ -39,6 +39,23 @@ def at_azimuth(sectors: np.ndarray, azimuth: float) -> np.ndarray:
     return blended
 
 
+def canopy_at(sectors: np.ndarray, azimuth: float, heights: int) -> np.ndarray:
+    """Canopy horizons at a sun azimuth, one channel a height.
+
+    Args:
+        sectors: [rad], [heights (of each section, one after the other), chi, J, I]. azimuth: [rad].
+
+    Returns:
+        (J, I[, heights]); of several sections (S (J + 2), I[, heights]), as `stacked_at` has heights.
+    """
+    levels = [at_azimuth(level, azimuth) for level in sectors]
+    first = range(0, len(levels), heights)
+    each = levels if heights == 1 else [np.stack(levels[n : n + heights], axis=-1) for n in first]
+    if len(each) == 1:
+        return each[0]
+    return np.concatenate([np.concatenate([one[-1:], one, one[:1]]) for one in each])
+
+
 def terrain_at(baked: Arrays, azimuth: float) -> np.ndarray:
     """Terrain horizon (N, N) at a sun azimuth, row 0 at the south as textures have it."""
     return np.ascontiguousarray(at_azimuth(baked["sectors"], azimuth)[::-1])

@@ -9,6 +9,7 @@ import numpy as np
 
 from renderer.core.cache import AssetStore
 from renderer.core.errors import AssetError, InputError, LimitError
+from renderer.forest.planting import BANDS
 from renderer.forest.species import species
 from renderer.forest.tree import Tree
 from renderer.world.mesh import Mesh, MeshReading, load_mesh
@@ -60,6 +61,33 @@ def nursery(arguments: dict[str, Any]) -> tuple[list[Tree], np.ndarray, list[int
     if not meshes:
         raise InputError("canopy", "has no species with a weight above 0", "a weight up to 1 for one species at least")
     return meshes, np.array(shares) / sum(shares), kinds
+
+
+def listed(arguments: dict[str, Any]) -> dict[str, bool]:
+    """What a species map may name, in the order of its values from 1, and whether any of it is planted.
+
+    The built-in species stand in the order in which the document's `canopy` declares their weights, own trees in that
+    of `mesh`.
+    """
+    if arguments.get("mesh"):
+        return {f"tree {number}": True for number in range(1, len(str(arguments["mesh"]).split()) + 1)}
+    return {name: value > 0 for name, value in arguments.items() if name in species()}
+
+
+def bands_of(kinds: Sequence[int], arguments: dict[str, Any]) -> list[int]:
+    """Place of each mesh's species in that list, from 0.
+
+    Raises:
+        LimitError: there are more own trees than a species map can tell apart.
+    """
+    names = list(listed(arguments))
+    if len(names) > BANDS:
+        raise LimitError(
+            "canopy.mesh", f"has {len(names)} trees, each a species", f"at most {BANDS} with a species map"
+        )
+    if arguments.get("mesh"):
+        return [kind - len(species()) for kind in kinds]
+    return [names.index(list(species())[kind]) for kind in kinds]
 
 
 def _mesh(asset: str, arguments: dict[str, Any]) -> Mesh:

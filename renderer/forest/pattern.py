@@ -11,12 +11,13 @@ import numpy as np
 
 from renderer.core.technique import Arrays
 from renderer.forest.ambient import sky_share
-from renderer.forest.nursery import nursery
+from renderer.forest.nursery import bands_of, nursery
 from renderer.forest.pattern_kernels import extend, lay
 from renderer.forest.pattern_mips import encode_colour, encode_normal, mips
-from renderer.forest.planting import Standing, plant
+from renderer.forest.planting import NEARNESS, Standing, banded, plant
 from renderer.forest.safe_distance import safe_distance
 from renderer.forest.seen_levels import OPAQUE, seen_levels
+from renderer.forest.species_alone import of_owner, sections
 from renderer.forest.tiles import RHOMBI, lattice, tile_table
 from renderer.forest.tree import Tree
 from renderer.forest.world_scale import CANOPY_HEIGHT, TILE_SIDE, VOXEL
@@ -36,6 +37,7 @@ AXES = lattice(VOXEL)
 
 WOOD = 128
 """Mark of trunk and branch in the byte that holds a tree's rank."""
+
 
 @dataclass(frozen=True)
 class Atlas:
@@ -111,7 +113,8 @@ def bake_pattern(
     """Make the atlas of all tiles.
 
     Args:
-        arguments: the document's `canopy`: weights of the species by name, `mesh`, `density`, `seed`.
+        arguments: the document's `canopy`: weights of the species by name, `mesh`, `density`, `seed`; `apart` for a
+        species map: the species stand nearer to each other, each with a band of the ranks (`planting.banded`).
         inputs: none. progress: told the share done; may raise `Cancelled`.
 
     Returns:
@@ -122,11 +125,17 @@ def bake_pattern(
         (Chebyshev distance to matter); the tree's rank (`planting.ranked`), plus WOOD in wood;
         the same with `_1` to `_5` at coarser levels (opacity over the level's own voxel length); `seen_1` to `seen_5`
         as in `seen_levels`; `tile` uint8 [is_down, variant, key, 2]: see `tiles`; `trees` float32 [n, 6]: foot
-        x and y in the atlas [m, world axes], height and crown radius [m], number of the species, number of the mesh.
+        x and y in the atlas [m, world axes], height and crown radius [m], number of the species, number of the mesh;
+        with `apart`, `bands` (S,), and `seen_1` to `seen_5` of each of the 1 + S `species_alone.sections`, one above
+        the other.
     """
     progress(0.0, "growing trees")
     meshes, weights, kinds = nursery(arguments)
-    standing = plant(meshes, kinds, weights, float(arguments["density"]), int(arguments["seed"]))
+    bands = bands_of(kinds, arguments) if arguments.get("apart") else None
+    nearness = 1.0 if bands is None else NEARNESS
+    standing = plant(meshes, kinds, weights, float(arguments["density"]), int(arguments["seed"]), nearness)
+    if bands is not None:
+        standing = banded(standing, bands)
     attributes = [np.concatenate([tree.colour, tree.wood[:, None]], axis=1).astype(np.float32) for tree in meshes]
     atlas = Atlas.empty()
     with ThreadPoolExecutor(2) as pool:
@@ -136,16 +145,36 @@ def bake_pattern(
             blocks = pool.map(lambda one: voxels_of(meshes[one.tree], attributes[one.tree], one), some)
             for one, (corner, found) in zip(some, blocks, strict=True):
                 atlas.add(one, corner, found)
-    level = _level(atlas, progress)
+    planted = None if bands is None else np.unique(bands).astype(np.uint8)
+    level = _level(atlas, planted, progress)
     progress(0.9, "making coarser levels")
     result = dict(level)
     for number, coarse in enumerate(mips(level), start=1):
         result |= {f"{name}_{number}": array for name, array in coarse.items()}
-    result |= seen_levels(level, AXES, VOXEL, lambda share: progress(0.92 + 0.08 * share, "making coarser levels"))
+    if planted is not None:
+        result["bands"] = planted
+    result |= _seen(level, planted, lambda share: progress(0.92 + 0.08 * share, "making coarser levels"))
     return {**result, "tile": tile_table(), "trees": _list(standing, meshes, kinds)}
 
 
-def _level(atlas: Atlas, progress: Callable[[float, str], None]) -> dict[str, np.ndarray]:
+def _seen(level: Arrays, bands: np.ndarray | None, tell: Callable[[float], None]) -> dict[str, np.ndarray]:
+    """The coarser levels of what a view ray reads, of each section by itself."""
+    if bands is None:
+        return seen_levels(level, AXES, VOXEL, tell)
+    masks = sections(level["anchor"], bands)
+    made = []
+    for number, stand in enumerate(masks):
+        colour, anchor = np.where(stand[..., None], level["colour"], np.uint8(0)), level["anchor"].copy()
+        full = colour[..., 3] > 0
+        # What stood there points to trees that do not stand: the air around others has to point to these.
+        extend(full, np.zeros((*full.shape, 3), np.float32), anchor, AXES)
+        anchor[..., 2] = safe_distance(full)
+        own = {"colour": colour, "anchor": anchor}
+        made.append(seen_levels(own, AXES, VOXEL, lambda share, n=number: tell((n + share) / len(masks))))  # type: ignore[misc]
+    return {name: np.concatenate([one[name] for one in made]) for name in made[0]}
+
+
+def _level(atlas: Atlas, bands: np.ndarray | None, progress: Callable[[float, str], None]) -> dict[str, np.ndarray]:
     """The finest level's bytes."""
     opacity = opacity_of(atlas.mask)
     area = np.maximum(atlas.area, np.float32(1e-12))[..., None]
@@ -162,7 +191,12 @@ def _level(atlas: Atlas, progress: Callable[[float, str], None]) -> dict[str, np
     extinction = -np.log1p(-np.minimum(encoded[..., 3].astype(np.float32) / np.float32(255), OPAQUE)) / np.float32(
         VOXEL
     )
-    sky = sky_share(extinction, AXES, VOXEL, lambda share: progress(0.68 + 0.2 * share, "gathering light from the sky"))
+    sky = of_owner(
+        atlas.anchor,
+        bands,
+        lambda own, tell: sky_share(extinction * own, AXES, VOXEL, tell),
+        lambda share: progress(0.68 + 0.2 * share, "gathering light from the sky"),
+    )
     return {
         "colour": encoded,
         "normal": encode_normal(np.concatenate([normal, sky[..., None]], axis=-1)),

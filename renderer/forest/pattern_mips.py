@@ -54,6 +54,16 @@ def coarser(colour: np.ndarray, normal: np.ndarray, anchor: np.ndarray) -> tuple
     return merged, mean.astype(np.float32), _densest(anchor, colour[..., 3])
 
 
+def coarser_opacity(alpha: np.ndarray) -> np.ndarray:
+    """Opacity (K, J, I) uint8 of the next level, as `coarser` has it."""
+    given = alpha[..., None].astype(np.float32) / np.float32(255)
+    sums = []
+    for axis in range(3):
+        first, second = _pairs(given, axis)
+        sums.append(_average(1 - (1 - first) * (1 - second), tuple(other for other in range(3) if other != axis)))
+    return encode_colour((sums[0] + sums[1] + sums[2]) / np.float32(3))[..., 0]
+
+
 def _densest(anchor: np.ndarray, opacity: np.ndarray) -> np.ndarray:
     k, j, i = (size // 2 for size in opacity.shape)
     children = anchor.reshape(k, 2, j, 2, i, 2, 4).transpose(0, 2, 4, 1, 3, 5, 6).reshape(k, j, i, 8, 4)

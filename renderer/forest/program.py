@@ -14,7 +14,7 @@ from renderer.world.camera import CAMERA_DECLARATIONS
 from renderer.world.sky import SKY_DECLARATIONS
 
 if TYPE_CHECKING:
-    from renderer.forest.state import ForestState
+    from renderer.forest.state import ForestState, Macros
     from renderer.forest.technique import ForestTechnique
 
 ENTRY_STEPS = 128
@@ -29,6 +29,8 @@ MARCH_STEPS = 1024
 WORLD_DECLARATIONS = """uniform sampler2D heights;        // coefficients of each cell, as shares of terrain_range
 uniform sampler2D normals;         // of the ground, and its cover
 uniform sampler2D cover;           // share of the trees that stand, and metres to the next
+uniform sampler2D species;         // of 255: the one that stands there, from 1, 0 where all are mixed; and its section
+uniform sampler2DArray species_voxels; // coarser levels of each section, one above the other
 uniform sampler2D growth;          // height of the stands against the pattern's
 uniform sampler2DArray pattern_voxels;
 uniform sampler3D pattern_normal;
@@ -161,7 +163,6 @@ void main() {{
     {copies}
 }}"""
 
-
 Chosen = tuple[tuple[str, type["ForestTechnique"], tuple[tuple[str, str], ...]], ...]
 
 
@@ -169,7 +170,7 @@ def trace_source(state: ForestState) -> Source:
     """The fragment stage that finds where each ray looks at the light, and what stands there; no sun is in it."""
     body = TRACE_BODY % SCOUT_BLOCKS[-1]
     files = ("forest/crossing.glsl",), ("forest/trace.glsl",)
-    return _composed(_chosen(state, TRACE_SLOTS), *files, body, True, state.cover.local_heights)
+    return _composed(_chosen(state, TRACE_SLOTS), *files, body, True, state.macros)
 
 
 def shade_source(state: ForestState, look: int = 0) -> Source:
@@ -194,7 +195,7 @@ def _shading(
     state: ForestState, slots: tuple[str, ...], before: tuple[str, ...], after: tuple[str, ...], body: str, look: int
 ) -> Source:
     sky = state.view.background == "sky"
-    return _composed(_chosen(state, slots), before, after, BEFORE_SKY + body, sky, state.cover.local_heights, look)
+    return _composed(_chosen(state, slots), before, after, BEFORE_SKY + body, sky, state.macros, look)
 
 
 def _chosen(state: ForestState, slots: tuple[str, ...]) -> Chosen:
@@ -205,14 +206,14 @@ def _chosen(state: ForestState, slots: tuple[str, ...]) -> Chosen:
 
 @functools.lru_cache(maxsize=256)
 def _composed(
-    chosen: Chosen, before: tuple[str, ...], after: tuple[str, ...], body: str, sky: bool, local: bool, look: int = 0
+    chosen: Chosen, before: tuple[str, ...], after: tuple[str, ...], body: str, sky: bool, cover: Macros, look: int = 0
 ) -> Source:
     files = ["lib/pixel.glsl", "lib/camera.glsl", "lib/sky.glsl", "forest/world.glsl", "forest/events.glsl", *before]
     files += [glsl_file("forest", slot, technique.model_fields["kind"].default) for slot, technique, _ in chosen]
     files += after
     declarations = [CAMERA_DECLARATIONS, SKY_DECLARATIONS, WORLD_DECLARATIONS, uniform_declarations(Ground, "ground")]
     declarations += [LOOK_DECLARATIONS] if look else []
-    macros = _limits(local) | {"BACKGROUND_SKY": int(sky), "LOOK": look}
+    macros = _limits(cover) | {"BACKGROUND_SKY": int(sky), "LOOK": look}
     for slot, technique, build in chosen:
         declarations += [f"uniform {kind} {slot}_{name};" for name, kind in technique.textures.items()]
         declarations += [uniform_declarations(technique, slot), *technique.extra_declarations]
@@ -222,13 +223,13 @@ def _composed(
 
 @functools.lru_cache(maxsize=64)
 def pass_source(
-    slot: str, name: str, glsl: str, declarations: tuple[str, ...], local: bool = False, targets: int = 1
+    slot: str, name: str, glsl: str, declarations: tuple[str, ...], cover: Macros = (), targets: int = 1
 ) -> Source:
     """The fragment stage of a pass drawn from the sun, `glsl`, with the uniforms it declares, into some textures at
-    once; `local` as `_limits`."""
+    once; `cover` as `_limits`."""
     text = "\n".join([WORLD_DECLARATIONS, uniform_declarations(Ground, "ground"), *declarations])
     body = PASS_BODY % (slot, name) if targets == 1 else _several(slot, name, targets)
-    return assemble([glsl], defines=_limits(local), declarations=text, body=body)
+    return assemble([glsl], defines=_limits(cover), declarations=text, body=body)
 
 
 def _several(slot: str, name: str, targets: int) -> str:
@@ -248,12 +249,14 @@ def scout_source(number: int) -> Source:
     return assemble(files, defines=_limits(), declarations=text, body=SCOUT_BODY % (start, side))
 
 
-def _limits(local: bool = False) -> dict[str, str | int]:
-    """Macros of every program; `local` where trees are taller at one place than at another."""
+def _limits(cover: Macros = ()) -> dict[str, str | int]:
+    """Macros of every program, with those of the state (`ForestState.macros`)."""
     return {
-        "LOCAL_CANOPY": int(local),
+        "LOCAL_CANOPY": 0,
+        "SPECIES_MAP": 0,
         "LOOK": 0,
         "ENTRY_STEPS": ENTRY_STEPS,
         "MARCH_STEPS": MARCH_STEPS,
         "TILE_MAP": f"{TILE_MAP}.0",
+        **dict(cover),
     }

@@ -34,7 +34,7 @@ from renderer.world.sky import sky_for, sky_uniforms
 from renderer.world.sun import angles, direction
 
 if TYPE_CHECKING:
-    from renderer.forest.state import ForestState
+    from renderer.forest.state import ForestState, Macros
     from renderer.forest.technique import SunPass
 
 Baked = Mapping[str, BakedArrays]
@@ -202,7 +202,7 @@ class ForestRenderer:
             made = self._moment.get(
                 key,
                 lambda p=sun_pass, s=slot, t=sampled: {  # type: ignore[misc]
-                    "drawn": self._draw_pass(s, p, values, t, state.cover.local_heights)
+                    "drawn": self._draw_pass(s, p, values, t, state.macros)
                 },
             )
             drawn = made["drawn"]
@@ -261,11 +261,11 @@ class ForestRenderer:
         return {"traced_place": place, "traced_voxel": voxel}
 
     def _draw_pass(
-        self, slot: str, sun_pass: SunPass, values: dict[str, Any], textures: dict[str, AnyTexture], local: bool
+        self, slot: str, sun_pass: SunPass, values: dict[str, Any], textures: dict[str, AnyTexture], cover: Macros
     ) -> Layers:
         kinds = tuple(sun_pass.targets.values())
         layers = Layers(self._gl, sun_pass.resolution, sun_pass.resolution * sun_pass.layers, kinds)
-        source = pass_source(slot, sun_pass.name, sun_pass.glsl, sun_pass.declarations, local, len(kinds))
+        source = pass_source(slot, sun_pass.name, sun_pass.glsl, sun_pass.declarations, cover, len(kinds))
         layers.use()
         run_fullscreen(self._gl, source, textures, values | dict(sun_pass.uniforms))
         return layers

@@ -12,6 +12,7 @@ import numpy as np
 from numba import njit
 
 from renderer.core.technique import Arrays
+from renderer.forest.species_alone import each_section, opacities
 from renderer.forest.tiles import RHOMBI, lattice
 from renderer.forest.world_scale import CANOPY_HEIGHT, TILE_SIDE, VOXEL
 
@@ -168,10 +169,21 @@ def bake_soft_horizon(
         `soft`, uint8 [chi, heights, J, I, 3]: horizon and half penumbra as shares of `GAMMA_RANGE` and `SPREAD_RANGE`,
         and the share of the sun that passes above. From the sheared horizontal (along the ground); sector m looks along
         WORLD azimuth 2 pi m / chi from north. The neighbours are those of the atlas; on the map they are others of the
-        same make.
+        same make. Of several sections, the heights of one after those of the other.
     """
     sectors, levels = int(arguments["sectors"]), np.array(arguments["heights"], float)
-    alpha = np.minimum(inputs["pattern"]["colour"][..., 3] / np.float32(255), np.float32(1 - 2**-12))
+
+    def one(alpha: np.ndarray, tell: Callable[[float], None]) -> np.ndarray:
+        return np.moveaxis(_soft(alpha, sectors, levels, tell), 1, 0)
+
+    words = "looking out of the canopy"
+    found = each_section(opacities(inputs["pattern"]), one, lambda share: progress(share, words))
+    return {"soft": np.ascontiguousarray(np.moveaxis(found, 0, 1))}
+
+
+def _soft(opacity: np.ndarray, sectors: int, levels: np.ndarray, progress: Callable[[float], None]) -> np.ndarray:
+    """The soft horizons [chi, heights, J, I, 3] of a canopy of opacity (K, J, I) uint8."""
+    alpha = np.minimum(opacity / np.float32(255), np.float32(1 - 2**-12))
     voxel = TILE_SIDE * RHOMBI / alpha.shape[2]
     extinction = (-np.log1p(-alpha) / np.float32(VOXEL)).astype(np.float32)
     layer = CANOPY_HEIGHT / len(extinction)
@@ -198,5 +210,5 @@ def bake_soft_horizon(
 
     with ThreadPoolExecutor(cpu_count()) as pool:
         for done, _ in enumerate(pool.map(one, range(sectors))):
-            progress(done / sectors, "looking out of the canopy")
-    return {"soft": result}
+            progress(done / sectors)
+    return result

@@ -1,4 +1,4 @@
-"""What a user's own maps say of the forest: how dense it is, and how tall, over the terrain's square."""
+"""What a user's own maps say of the forest over the terrain's square: how dense, how tall, and of which species."""
 
 from __future__ import annotations
 
@@ -74,6 +74,34 @@ def density_map(rules: dict[str, Any]) -> np.ndarray:
             "the value that means a closed forest, as 100 for per cent; negative values mean nothing",
         )
     return np.clip(spread(values / full, PRESENCE_SIDE), 0, 1)
+
+
+def species_map(rules: dict[str, Any], listed: dict[str, bool]) -> np.ndarray:
+    """Numbers (P, P) uint8 of the document's `cover.species_map`, stretched over the square: of the nearest pixel, from
+    1 the one of `listed` that stands there, 0 where all do; row 0 the north.
+
+    Args:
+        rules: the document's `cover`. listed: names in order, and whether any of it is planted.
+
+    Raises:
+        InputError: naming `cover.species_map`.
+    """
+    field = "cover.species_map"
+    try:
+        values, _ = load_map(stored(rules["species_map"], field), "species")
+    except InputError as failure:
+        raise failure.at(field) from None
+    meant = ", ".join(f"{number} {name}" for number, name in enumerate(listed, start=1))
+    found = np.unique(values)
+    wrong = found[(found != np.rint(found)) | (found < 0) | (found > len(listed))]
+    if len(wrong):
+        raise AssetError(field, f"has the value {wrong[0]:g}", f"0 where all are mixed, {meant}")
+    for number, (name, planted) in enumerate(listed.items(), start=1):
+        if number in found and not planted:
+            raise AssetError(field, f"has the value {number}, but canopy.{name} is 0", f"a weight above 0 for {name}")
+    row, column = ((np.arange(PRESENCE_SIDE) + 0.5) * length // PRESENCE_SIDE for length in values.shape)
+    nearest: np.ndarray = values[np.ix_(row.astype(int), column.astype(int))].astype(np.uint8)
+    return nearest
 
 
 def stand_of(pattern: Arrays, lowest: float) -> tuple[float, float]:

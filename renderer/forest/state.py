@@ -6,13 +6,16 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
-from renderer.core.params import Colour, Model, param
+from renderer.core.params import Colour, Model, bake_arguments, param
 from renderer.core.registry import slot_union
+from renderer.forest.nursery import listed
 from renderer.world.atmosphere import Atmosphere
 from renderer.world.camera import Camera, Orbit
 from renderer.world.mesh import MeshReading
 from renderer.world.state import SceneState
 from renderer.world.terrain import TerrainReading
+
+Macros = tuple[tuple[str, int], ...]
 
 SLOTS = ("geometry", "shadow", "height_shading", "light", "sky", "filter")
 DEFAULTS = {
@@ -121,6 +124,15 @@ class Cover(Model):
         cost="bake",
         ge=0,
         le=1e6,
+    )
+    species_map: str = param(
+        "",
+        label="Species map",
+        help="An uploaded raster of whole numbers, as asset:HASH, stretched over the square: 1 where only broadleaf "
+        "stands, 2 conifer, 3 birch (of own trees, their numbers), 0 where all are mixed. The pixel at a tree's foot "
+        "counts.",
+        cost="bake",
+        pattern=r"^(asset:[0-9a-f]{64})?$",
     )
     canopy_model: str = param(
         "",
@@ -238,6 +250,13 @@ class ForestState(SceneState):
     filter: slot_union("forest", "filter") = _slot(  # type: ignore[valid-type]
         "filter", "Filtering", "Which level of the pattern a distance deserves."
     )
+
+    @property
+    def macros(self) -> Macros:
+        """What the programs are built for: local heights, and how many canopies a species map tells apart."""
+        planted = sum(listed(bake_arguments(self.canopy)).values())
+        species = 1 + planted if self.cover.species_map else 0
+        return ("LOCAL_CANOPY", int(self.cover.local_heights)), ("SPECIES_MAP", species)
 
     def techniques(self) -> dict[str, Any]:
         """The chosen technique of each slot."""

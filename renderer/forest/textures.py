@@ -29,6 +29,9 @@ HALF = 32768 / 65535
 TILE_MAP = 256
 """Cells a side of the patch of tiles that is kept: 10 km, twice the square; farther out it comes round again."""
 
+NO_SPECIES = np.zeros((1, 1, 2), np.uint8)
+"""The species map of a land without one."""
+
 ATLAS_WRAP: tuple[Wrap, Wrap, Wrap] = ("repeat", "repeat", "clamp")
 """The atlas comes round along its sides, and ends above and below."""
 
@@ -64,14 +67,23 @@ def stand_texture(presence: np.ndarray) -> np.ndarray:
 
 
 def ground_textures(gl: GL, ground: Arrays) -> dict[str, AnyTexture]:
-    """`heights`, `normals` (with the smooth cover), `cover` and `growth` from the `terrain` bake."""
+    """`heights`, `normals` (with the smooth cover), `cover`, `species` and `growth` from the `terrain` bake."""
     slope = normals(ground["elevation"], (CELL, CELL))[::-1]
     return {
         "heights": gl.texture2d(bilinear_cells(ground["elevation"])[0], filter="nearest"),
         "normals": gl.texture2d(np.concatenate([slope, ground["cover"][::-1, :, None]], axis=-1).astype(np.float16)),
         "cover": gl.texture2d(stand_texture(ground["presence"])),
+        "species": gl.texture2d(_species(ground), filter="nearest"),
         "growth": gl.texture2d(np.ascontiguousarray(ground["growth"][::-1]), filter="linear"),
     }
+
+
+def _species(ground: Arrays) -> np.ndarray:
+    """Number and section of the species that stands at each place, (P, P, 2) uint8, row 0 at the south."""
+    if "species" not in ground:
+        return NO_SPECIES
+    number = ground["species"][::-1]
+    return np.stack([number, np.asarray(ground["sections"])[number]], axis=-1)
 
 
 def packed(colour: np.ndarray, anchor: np.ndarray) -> np.ndarray:
@@ -113,9 +125,11 @@ def technique_textures(
 
 
 def pattern_textures(gl: GL, pattern: Arrays) -> dict[str, AnyTexture]:
-    """`pattern_voxels` and `pattern_normal` from the `pattern` bake, with its own mip levels."""
+    """`pattern_voxels`, `species_voxels` and `pattern_normal` from the `pattern` bake, with its own mip levels."""
     ends = _endings(pattern)
-    coarse = [paired(pattern[f"seen{end}"]) for end in ends[1:]]
+    seen = [paired(pattern[f"seen{end}"]) for end in ends[1:]]
+    # Under a species map coarser levels have sections, which the finest, where each tree is asked, has not.
+    coarse, alone = ([], seen) if "bands" in pattern else (seen, [np.zeros((1, 1, 1, 4), np.uint16)])
     normals_of = [pattern[f"normal{end}"] for end in ends]
     shaded = gl.texture3d(normals_of[0], "linear", ATLAS_WRAP, normals_of[1:])
     # The level asked for is always whole: blending two levels would fetch twice for nothing.
@@ -123,6 +137,7 @@ def pattern_textures(gl: GL, pattern: Arrays) -> dict[str, AnyTexture]:
     return {
         "pattern_voxels": gl.texture_array(packed(pattern["colour"], pattern["anchor"]), "nearest", "repeat", coarse),
         "pattern_normal": shaded,
+        "species_voxels": gl.texture_array(alone[0], "nearest", "repeat", alone[1:]),
     }
 
 

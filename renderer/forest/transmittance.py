@@ -12,6 +12,7 @@ import numpy as np
 from renderer.core.technique import Arrays, Bake
 from renderer.forest.horizon_textures import sectors_beside
 from renderer.forest.pattern_kernels import add_transmittance
+from renderer.forest.species_alone import opacities
 from renderer.forest.tiles import RHOMBI, lattice
 from renderer.forest.world_scale import CANOPY_HEIGHT, TILE_SIDE
 
@@ -63,13 +64,31 @@ def bake_transmittance(
         inputs: `pattern`, with `colour_1`, of twice the voxels' length.
 
     Returns:
-        `coefficients` float32 (K, J, I, R) and `basis` float32 (AZIMUTHS, ELEVATIONS, R), whose product is the
-        transmittance; `residual` () root mean square of what the components leave out.
+        `coefficients` float32 (S, K, J, I, R) and `basis` float32 (S, AZIMUTHS, ELEVATIONS, R), whose product is the
+        transmittance of each of the S sections; `residual` () root mean square of what the components leave out.
+        Without a species map there is one section, and no axis of it.
 
     Source: Sloan, Hall, Hart & Snyder 2003, section 4 (principal components of transferred light), of one cluster.
     The surroundings are the atlas' own; on the map they are others of the same make.
     """
-    extinction, voxel = extinction_of(np.asarray(inputs["pattern"]["colour_1"])[..., 3])
+    given, made = opacities(inputs["pattern"], 1), []
+    for number, alpha in enumerate(given):
+        made.append(
+            _components(
+                alpha,
+                int(arguments["coefficients"]),
+                lambda share, words, n=number: progress((n + share) / len(given), words),  # type: ignore[misc]
+            )
+        )
+    if len(made) == 1:
+        return made[0]
+    found = {name: np.stack([one[name] for one in made]) for name in ("coefficients", "basis")}
+    return {**found, "residual": np.sqrt(np.mean([one["residual"] ** 2 for one in made]))}
+
+
+def _components(alpha: np.ndarray, kept: int, progress: Callable[[float, str], None]) -> dict[str, np.ndarray]:
+    """The functions of the voxels of one canopy of opacity (K, J, I) uint8, in their own principal components."""
+    extinction, voxel = extinction_of(alpha)
     count = AZIMUTHS * len(ELEVATIONS)
     table = np.empty((count, extinction.size), np.float32)
 
@@ -83,7 +102,6 @@ def bake_transmittance(
             progress(0.6 * done / count, "letting the sun through the canopy")
     progress(0.6, "finding what the voxels have in common")
     weights, directions = np.linalg.eigh((table @ table.T).astype(np.float64))
-    kept = int(arguments["coefficients"])
     basis = np.ascontiguousarray(directions[:, ::-1][:, :kept], np.float32)
     left = float(np.maximum(weights[: count - kept], 0).sum())
     return {
@@ -99,7 +117,11 @@ def transmittance_bake(pattern: Bake, coefficients: int) -> Bake:
 
 
 def at_sun(baked: Arrays, azimuth: float, elevations: np.ndarray) -> np.ndarray:
-    """Transmittance for one azimuth and several elevations over the slope [rad]: bytes (K, J, I, elevations)."""
+    """Transmittance for one azimuth and several elevations over the slope [rad]: bytes (K, J, I, elevations), the
+    sections one above the other."""
+    if baked["basis"].ndim == 4:
+        each = zip(baked["coefficients"], baked["basis"], strict=True)
+        return np.concatenate([at_sun({"coefficients": c, "basis": b}, azimuth, elevations) for c, b in each])
     basis = baked["basis"]
     first, second, part = sectors_beside(azimuth, len(basis))
     share = np.float32(part)

@@ -15,6 +15,7 @@ import numpy as np
 
 from renderer.core.technique import Arrays, Bake
 from renderer.forest.ambient import directions
+from renderer.forest.species_alone import each_section, opacities
 from renderer.forest.transmittance import extinction_of, transmittance
 from renderer.forest.world_scale import CELL
 from renderer.world.horizon_sweep import sweeps
@@ -40,9 +41,20 @@ def bake_canopy_sky(
 
     Returns:
         `seen` uint8 (K, J, I, 4), packed: the integrals over the upper hemisphere of the transmittance V / 2 pi and of
-        V w / pi, w the direction; 1 and (0, 0, 1) where nothing hides the sky.
+        V w / pi, w the direction; 1 and (0, 0, 1) where nothing hides the sky. Of several sections, one above the
+        other.
     """
-    extinction, voxel = extinction_of(np.asarray(inputs["pattern"]["colour_1"])[..., 3])
+
+    def one(alpha: np.ndarray, tell: Callable[[float], None]) -> np.ndarray:
+        return packed(_sky_through(alpha, tell))
+
+    words = "looking at the sky through the canopy"
+    return {"seen": each_section(opacities(inputs["pattern"], 1), one, lambda share: progress(share, words))}
+
+
+def _sky_through(alpha: np.ndarray, progress: Callable[[float], None]) -> np.ndarray:
+    """Moments (K, J, I, 4) of the sky that each voxel of opacity (K, J, I) uint8 sees."""
+    extinction, voxel = extinction_of(alpha)
     rays, shares = directions()
     seen = np.zeros((*extinction.shape, 4), np.float32)
 
@@ -54,8 +66,8 @@ def bake_canopy_sky(
         for number, through in enumerate(pool.map(one, range(len(rays)))):
             for channel, factor in enumerate((1.0, *(2 * rays[number]))):
                 seen[..., channel] += np.float32(shares[number] * factor) * through
-            progress(number / len(rays), "looking at the sky through the canopy")
-    return {"seen": packed(seen)}
+            progress(number / len(rays))
+    return seen
 
 
 def bake_land_sky(

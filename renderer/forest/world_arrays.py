@@ -27,8 +27,8 @@ def world_arrays(state: ForestState, baked: Mapping[str, Arrays]) -> dict[str, A
         baked: arrays of `NEEDS`.
 
     Returns:
-        By name: the arrays of the ground (`elevation`, `cover`, `presence`, `growth`), of the pattern (`colour`,
-        `normal`, `anchor`, `tile`), and the numbers that scale, seed and light them, named as in its world;
+        By name: the arrays of the ground (`elevation`, `cover`, `presence`, `species`, `growth`), of the pattern
+        (`colour`, `normal`, `anchor`, `tile`), and the numbers that scale, seed and light them, named as in its world;
         `background`, the radiance of the sky for unit directions (M, 3), W m-2 sr-1.
     """
     ground, pattern = baked["terrain"], baked["pattern"]
@@ -42,6 +42,7 @@ def world_arrays(state: ForestState, baked: Mapping[str, Arrays]) -> dict[str, A
         "elevation": ground["elevation"],
         "cover": ground["cover"],
         "presence": ground["presence"] / 255.0,
+        "species": ground.get("species"),
         "growth": ground["growth"],
         "cell": CELL,
         "canopy_height": CANOPY_HEIGHT,

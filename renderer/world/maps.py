@@ -17,7 +17,7 @@ from renderer.world.limits import DEFAULT_LIMITS, Limits, check_file
 from renderer.world.terrain_files import read_raster, terrain_format
 from renderer.world.terrain_grid import TerrainReading
 
-QUANTITIES = ("density", "thickness")
+QUANTITIES = ("density", "species", "thickness")
 """Names of the arrays that an .npz may hold as a map."""
 
 

@@ -35,7 +35,7 @@ float first_sunward(vec2 line, float texel, float threshold) {
         float gap = above - canopy_top;
         bool over = gap > 0.0;
         float layer = layer_height(p.xy);
-        vec4 voxel = voxel_at(vec3(atlas_coordinate(p.xy), clamp(above / layer, 0.0, 1.0)), level);
+        vec4 voxel = voxel_at(p.xy, vec3(atlas_coordinate(p.xy), clamp(above / layer, 0.0, 1.0)), level);
         vec2 stand = stand_of(p.xy, voxel);
         float depth = above > layer ? 0.0 : -log(1.0 - opacity_of(voxel)) * ds / voxel_size * stand.x;
         found = above <= 0.0 ? 2 : t > scene_reach ? 0 : gathered + depth >= wanted ? 3 : 1;

@@ -62,10 +62,56 @@ vec2 atlas_coordinate(vec2 xy) {
     return (vec2(p, tile - 4.0 * p) + f) * 0.25;
 }
 
+// Under a species map, SPECIES_MAP canopies are kept of what is baked of one, as if nothing else were planted: of all species mixed,
+// and of each alone (species_alone.py). Which of them stands at a place.
+float section_at(vec2 xy) {
+#if SPECIES_MAP > 0
+    return floor(textureLod(species, terrain_coordinate(xy), 0.0).g * 255.0 + 0.5);
+#else
+    return 0.0;
+#endif
+}
+
+// Place (u, v, h) in a filtered texture of layers, of the canopy that stands at xy: one is above the other, and none reads the next.
+vec3 layered(vec3 place, vec2 xy, float layers) {
+#if SPECIES_MAP > 0
+    float half_layer = 0.5 * float(SPECIES_MAP) / layers;
+    place.z = (section_at(xy) + clamp(place.z, half_layer, 1.0 - half_layer)) / float(SPECIES_MAP);
+#endif
+    return place;
+}
+
+// Place (u, v) in a map of the canopy that stands at xy: they are stacked, each with its last row again before it and its first after.
+vec2 stacked(vec2 uv, vec2 xy, vec2 size) {
+#if SPECIES_MAP > 0
+    float rows = size.y / float(SPECIES_MAP);
+    uv.y = (section_at(xy) * rows + 1.0 + fract(uv.y) * (rows - 2.0)) / size.y;
+#endif
+    return uv;
+}
+
+// Share of the trees that makes a closed canopy: less than all where a map leaves them mixed (planting.py, mixed_share).
+float closed_share(vec2 xy) {
+#if SPECIES_MAP > 0
+    return section_at(xy) > 0.0 ? 1.0 : 1.0 / (1.0 + 0.47 * (float(SPECIES_MAP) - 2.0));
+#else
+    return 1.0;
+#endif
+}
+
 // One voxel of a level, nearest to a place (u, v, h): red green, blue opacity, foot x y, distance wood, two bytes a channel.
 // Coarser levels halve its sides, not its height; opacity stays that of one voxel's length of the finest.
-vec4 voxel_at(vec3 place, float level) {
-    return textureLod(pattern_voxels, vec3(place.xy, place.z * canopy_height / voxel_size - 0.5), level) * 65535.0;
+// Of the finest level every tree is asked whether it stands; coarser ones are of the canopy that stands at xy.
+vec4 voxel_at(vec2 xy, vec3 place, float level) {
+    float layer = place.z * canopy_height / voxel_size - 0.5;
+    vec4 voxel = textureLod(pattern_voxels, vec3(place.xy, layer), level);
+#if SPECIES_MAP > 0
+    float layers = floor(canopy_height / voxel_size + 0.5);
+    float held = section_at(xy) * layers + clamp(floor(layer + 0.5), 0.0, layers - 1.0);
+    vec4 coarse = textureLod(species_voxels, vec3(place.xy, held), max(level - 1.0, 0.0));
+    voxel = level > 0.5 ? coarse : voxel;
+#endif
+    return voxel * 65535.0;
 }
 
 // Offset in atlas coordinates, for level 0, that makes the mean of nearest voxels trilinear interpolation: a box one voxel wide.
@@ -102,12 +148,24 @@ vec2 foot_of(vec2 xy, vec4 voxel) {
     return xy + (two_bytes(voxel.z) - 128.0) * 0.0625;
 }
 
-// Whether the tree that owns the voxel stands, 0 or 1, and how far off the next one may be [m]: its rank, of 128 in which the stand is
-// thinned, against the share that stands at its foot.
+// What share of a stand's trees must stand at the foot of one for it to be among them: its rank, of 128 in which the stand is thinned,
+// from the byte that marks it. Under a species map each species has a band of 32 ranks, and stands only where the map's texel at its
+// foot has its number or 0.
+float rank_of(vec2 foot, float mark) {
+    float rank = mod(mark, 128.0) / 128.0;
+#if SPECIES_MAP > 0
+    float wanted = floor(textureLod(species, terrain_coordinate(foot), 0.0).r * 255.0 + 0.5);
+    float own = floor(rank * 4.0) + 1.0;
+    rank = wanted == 0.0 || wanted == own ? fract(rank * 4.0) : 2.0;
+#endif
+    return rank;
+}
+
+// Whether the tree that owns the voxel stands, 0 or 1, and how far off the next one may be [m].
 vec2 stand_of(vec2 xy, vec4 voxel) {
-    vec2 found = cover_at(foot_of(xy, voxel));
-    float rank = mod(two_bytes(voxel.w).y, 128.0) / 128.0;
-    return vec2(found.x > rank ? 1.0 : 0.0, found.y);
+    vec2 foot = foot_of(xy, voxel);
+    vec2 found = cover_at(foot);
+    return vec2(found.x > rank_of(foot, two_bytes(voxel.w).y) ? 1.0 : 0.0, found.y);
 }
 
 // Slow variation of the trees' colour, from the foot of each tree.

@@ -102,6 +102,7 @@ def _asked(
         if any(f"{slot}_{name}" not in made for name in technique.textures):
             held |= drawers[0]._kept(slot, technique, state, baked)
     text = [program.WORLD_DECLARATIONS, uniform_declarations(Ground, "ground")]
+    sections = 1 + int(terrain["sections"].max()) if terrain and "sections" in terrain else 0
     for slot, technique in (techniques or {}).items():
         text += [uniform_declarations(type(technique), slot), *technique.extra_declarations]
         text += [f"uniform {kind} {slot}_{name};" for name, kind in technique.textures.items()]
@@ -109,7 +110,7 @@ def _asked(
     try:
         return probe(gl, ["forest/world.glsl", *files], body, inputs, outputs, uniforms=given | dict(values or {}),
                      textures=held | made, declarations="\n".join([*text, declarations]),
-                     defines=program._limits(local))
+                     defines=program._limits((("LOCAL_CANOPY", int(local)), ("SPECIES_MAP", sections))))
     finally:
         for texture in made.values():
             texture.release()

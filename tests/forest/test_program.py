@@ -25,8 +25,10 @@ ALL = [(slot, kind) for slot in SLOTS for kind in techniques("forest", slot)]
 SPARED: dict[str, Callable[[dict[str, str]], bool]] = {
     "sky_irradiance": lambda chosen: chosen["sky"] in {"constant", "visible_hemisphere"},
     "sun_elevation": lambda chosen: chosen["shadow"] == "none" or chosen["shadow"].endswith("shadow_map"),
-    # Trees are as tall everywhere, unless a canopy height model says otherwise.
+    # Trees are as tall everywhere, and of all species, unless a map says otherwise.
     "growth": lambda chosen: True,
+    "species": lambda chosen: True,
+    "species_voxels": lambda chosen: True,
     "canopy_least": lambda chosen: chosen["geometry"] == "slices",
     "canopy_grade": lambda chosen: chosen["geometry"] == "slices",
     "pixel_angle": lambda chosen: chosen["filter"] == "none",
@@ -55,11 +57,14 @@ def test_what_is_declared_is_used(thread: GLThread, slot: str, kind: str) -> Non
 
 
 def test_an_idle_uniform_is_found(thread: GLThread) -> None:
-    assert thread.call(left_over, worlds.state(view={"background": "sky"}), "uniform float idle;") == ["growth", "idle"]
+    assert thread.call(left_over, worlds.state(view={"background": "sky"}), "uniform float idle;") == [
+        "growth", "idle", "species", "species_voxels"
+    ]
 
 
-def test_local_heights_are_read(thread: GLThread) -> None:
-    state = worlds.state(view={"background": "sky"}, cover={"canopy_model": "asset:" + 64 * "0"})
+def test_local_heights_and_species_are_read(thread: GLThread) -> None:
+    maps = {"canopy_model": "asset:" + 64 * "0", "species_map": "asset:" + 64 * "0"}
+    state = worlds.state(view={"background": "sky"}, cover=maps)
     assert thread.call(left_over, state) == []
 
 

@@ -57,7 +57,7 @@ def test_a_bad_file_is_refused_in_words(tmp_path: Path, capsys: pytest.CaptureFi
 
 
 def test_the_fields_that_take_files_are_found() -> None:
-    assert asset_fields(SCHEMA) >= {"asset", "mesh", "density_map", "canopy_model"}
+    assert asset_fields(SCHEMA) >= {"asset", "mesh", "density_map", "species_map", "canopy_model"}
     assert not asset_fields(SCHEMA) & {"reading", "seed", "east"}
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from renderer.core.params import param
 from renderer.core.technique import Arrays, Bake
 from renderer.forest.bakes import canopy_horizon_bake, terrain_horizon_bake
-from renderer.forest.horizon_textures import at_azimuth, terrain_at
+from renderer.forest.horizon_textures import canopy_at, terrain_at
 from renderer.forest.technique import ForestTechnique
 from renderer.world.sun import angles
 
@@ -105,8 +105,8 @@ class DoubleHorizonMap(ForestTechnique):
     def frame_textures(self, state: ForestState, baked: Mapping[str, Arrays]) -> dict[str, np.ndarray]:
         """Horizon elevation [rad] at the sun's azimuth: `terrain` (N, N) and `canopy` (J, I[, 2])."""
         azimuth = angles(state.sun)[0]
-        top, low = (at_azimuth(level, azimuth) for level in baked["canopy_horizon"]["sectors"])
-        return {"terrain": terrain_at(baked["terrain_horizon"], azimuth), "canopy": np.stack([top, low], axis=-1)}
+        canopy = canopy_at(baked["canopy_horizon"]["sectors"], azimuth, 2)
+        return {"terrain": terrain_at(baked["terrain_horizon"], azimuth), "canopy": canopy}
 
     def constants(self) -> dict[str, float]:
         """The height that the low map was baked for."""

@@ -10,7 +10,7 @@ import numpy as np
 from renderer.core.params import param
 from renderer.core.technique import Arrays, Bake
 from renderer.forest.bakes import canopy_horizon_bake, terrain_horizon_bake
-from renderer.forest.horizon_textures import at_azimuth, terrain_at
+from renderer.forest.horizon_textures import canopy_at, terrain_at
 from renderer.forest.technique import ForestTechnique
 from renderer.world.sun import angles
 
@@ -66,5 +66,5 @@ class HorizonMap(ForestTechnique):
         azimuth = angles(state.sun)[0]
         return {
             "terrain": terrain_at(baked["terrain_horizon"], azimuth),
-            "canopy": at_azimuth(baked["canopy_horizon"]["sectors"][0], azimuth),
+            "canopy": canopy_at(baked["canopy_horizon"]["sectors"], azimuth, 1),
         }

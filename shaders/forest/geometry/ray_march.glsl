@@ -48,7 +48,7 @@ void geometry_trace(vec3 origin, vec3 direction, float t, vec4 jitter, inout Eve
         bool over = gap > 0.0;
         float layer = layer_height(p.xy);
         float h = clamp(above / layer, 0.0, 1.0);
-        vec4 voxel = voxel_at(vec3(atlas_coordinate(p.xy), h) + vec3(scale, scale, 1.0) * offset, level);
+        vec4 voxel = voxel_at(p.xy, vec3(atlas_coordinate(p.xy), h) + vec3(scale, scale, 1.0) * offset, level);
         bool gone = t > scene_reach || (over && direction.z >= 0.0 && p.z > scene_top);
         found = above <= 0.0 ? 2 : gone ? 0 : 1;
         vec2 stand = stand_of(p.xy, voxel);

@@ -38,7 +38,7 @@ void geometry_trace(vec3 origin, vec3 direction, float t, vec4 jitter, inout Eve
         vec3 q = origin + hit * direction;
         float h = clamp((sheet + 0.5) / float(geometry_count), 0.0, 1.0);
         float level = level_at(hit, jitter.z);
-        vec4 voxel = voxel_at(vec3(atlas_coordinate(q.xy), h) + exp2(level) * offset, level);
+        vec4 voxel = voxel_at(q.xy, vec3(atlas_coordinate(q.xy), h) + exp2(level) * offset, level);
         float voxels = min(spacing / max(abs(climb), 0.02), 8.0 * spacing) / voxel_size;
         float path = geometry_correct_opacity ? voxels : 1.0;
         float alpha = meets && found == 1 ? (1.0 - pow(1.0 - opacity_of(voxel), path)) * stand_of(q.xy, voxel).x : 0.0;

@@ -13,7 +13,7 @@
 // Gamma = w Gamma_top + (1 - w) Gamma_low, w = clamp((h - h_low) / (h_top - h_low), 0, 1): errata 000-1, where h_top is 1.
 float shadow_visibility(vec3 position, float h, vec2 uv) {
     float stand_here = stand_towards_sun(position.xy);
-    vec2 canopy = textureLod(shadow_canopy, uv, 0.0).rg * stand_here;
+    vec2 canopy = textureLod(shadow_canopy, stacked(uv, position.xy, vec2(textureSize(shadow_canopy, 0))), 0.0).rg * stand_here;
     float w = clamp((h - shadow_low) / (shadow_top - shadow_low), 0.0, 1.0);
     float land = textureLod(shadow_terrain, terrain_coordinate(position.xy), 0.0).r;
     float low = max(canopy.g, shadow_floor_low * stand_here);

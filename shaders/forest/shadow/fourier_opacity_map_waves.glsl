@@ -70,7 +70,7 @@ void shadow_waves_texel(vec2 pixel, out vec4 texels[1 + (SHADOW_COEFFICIENTS + 3
         float gap = above - canopy_top;
         bool over = gap > 0.0;
         float layer = layer_height(p.xy);
-        vec4 voxel = voxel_at(vec3(atlas_coordinate(p.xy), clamp(above / layer, 0.0, 1.0)), level);
+        vec4 voxel = voxel_at(p.xy, vec3(atlas_coordinate(p.xy), clamp(above / layer, 0.0, 1.0)), level);
         vec2 stand = stand_of(p.xy, voxel);
         float depth = above > layer ? 0.0 : -log(1.0 - opacity_of(voxel)) * ds / voxel_size * stand.x;
         found = above <= 0.0 || t >= crossing.z || values[0] >= 1.999 * DARK ? 2 : 1;

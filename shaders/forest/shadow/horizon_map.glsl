@@ -7,7 +7,7 @@
 #include "forest/horizon_threshold.glsl"
 
 float shadow_visibility(vec3 position, float h, vec2 uv) {
-    float canopy = textureLod(shadow_canopy, uv, 0.0).r * stand_towards_sun(position.xy);
+    float canopy = textureLod(shadow_canopy, stacked(uv, position.xy, vec2(textureSize(shadow_canopy, 0))), 0.0).r * stand_towards_sun(position.xy);
     float land = textureLod(shadow_terrain, terrain_coordinate(position.xy), 0.0).r;
     return horizon_visibility(land, canopy, shadow_softness, shadow_strength);
 }

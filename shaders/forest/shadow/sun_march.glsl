@@ -69,7 +69,7 @@ float shadow_visibility(vec3 position, float h, vec2 uv) {
             bool empty = voxel.x == 0.0;
             vec2 away = empty ? vec2(0.0) : (voxel.yz - 128.0) * 0.0625;
             vec2 stand = cover_at(p.xy + away);
-            bool met = rise < 1.0 && stand.x * 128.0 > mod(voxel.w, 128.0);
+            bool met = rise < 1.0 && stand.x > rank_of(p.xy + away, voxel.w);
             tau += above < 0.0 ? 100.0 : met ? -log2(1.0 - min(voxel.x / 255.0, 0.99975586)) * width / scale : 0.0;
             if (above > canopy_top + AWAY || tau > limit) break;
             float free = max(empty ? (voxel.y - 1.0) * scale * reach : 0.0, stand.y - length(away) - CROWN_REACH);

@@ -24,12 +24,13 @@ float shadow_visibility(vec3 position, float h, vec2 uv) {
     float climb = (sun_direction.z + dot(normal.xy, sun_direction.xy) / max(normal.z, 0.05)) / run;
     vec2 kept = kept_elevations(sun_elevation);
     float place = clamp(3.0 * log(max(atan(climb), 0.001) / kept.x) / log(kept.y / kept.x), 0.0, 3.0);
-    vec4 shares = textureLod(shadow_shares, vec3(uv, h), 0.0);
+    vec4 shares = textureLod(shadow_shares, layered(vec3(uv, h), position.xy, float(textureSize(shadow_shares, 0).z)), 0.0);
     float transmitted = dot(shares, max(1.0 - abs(place - vec4(0.0, 1.0, 2.0, 3.0)), 0.0));
     float reach = min((canopy_top - above) / max(climb, 0.01), WAY_OUT);
     vec2 halfway = position.xy + sun_direction.xy / run * min(0.5 * reach, 12.0);
-    float here = cover_at(position.xy).x;
-    float stand = 0.5 * (here + cover_at(halfway).x);
+    float closed = closed_share(position.xy);
+    float here = min(cover_at(position.xy).x / closed, 1.0);
+    float stand = 0.5 * (here + min(cover_at(halfway).x / closed, 1.0));
     float stretched = 1.0 / (run * sqrt(1.0 + climb * climb));
     // A ray from a glade meets the trees around it as the land's shadow has them; one from a stand has met them on its way out.
     float land = over_land(position + here * max(reach, 0.0) / run * sun_direction);

@@ -10,7 +10,7 @@
 // in front of them and too bright.
 
 Skylight sky_light(Spot spot) {
-    vec4 trees = textureLod(sky_seen, spot.place, 0.0);
+    vec4 trees = textureLod(sky_seen, layered(spot.place, spot.position.xy, float(textureSize(sky_seen, 0).z)), 0.0);
     trees.yz = trees.yz * 2.0 - 1.0;
     trees = mix(vec4(1.0, 0.0, 0.0, 1.0), trees, spot.wooded);
     vec4 land = textureLod(sky_land, terrain_coordinate(spot.position.xy), 0.0);

@@ -82,7 +82,7 @@ def test_the_lookup_is_the_twins(ask: Ask) -> None:
 
 
 @pytest.mark.parametrize(("right", "wrong"), [
-    ("soft_horizon(uv, level + 1.0, phi), place - level)", "soft_horizon(uv, level, phi), place - level)"),
+    ("soft_horizon(uv, lowest + level + 1.0, phi), place", "soft_horizon(uv, lowest + level, phi), place"),
     ("level * rows + 1.0 +", "level * rows +"),
     ("fract(uv.y)", "uv.y"),
     ("phi = sun_over_ground(position.xy)", "phi = sun_elevation"),

@@ -96,7 +96,7 @@ def test_an_even_canopy_dims_as_beer_and_lambert_say(ask: Ask, slope: float) -> 
     ("+ dot(normal.xy, sun_direction.xy)", "- dot(normal.xy, sun_direction.xy)"),
     ("clamp(3.0 * log(", "clamp(4.0 * log("),
     ("stand * stretched", "stand"),
-    ("vec3(uv, h), 0.0)", "vec3(uv, 0.5 * h), 0.0)"),
+    ("layered(vec3(uv, h),", "layered(vec3(uv, 0.5 * h),"),
 ])
 def test_a_wrong_elevation_or_height_is_found(ask: Ask, spoil: Callable, right: str, wrong: str) -> None:
     with spoil(FILE, right, wrong):
