@@ -33,6 +33,9 @@ THICKEST = 8.0
 EDGE = 0.3
 """Over how many standard deviations of the field a cloud gains its thickness."""
 
+SWELLS = 2.5
+"""Standard deviations of the field at which a cloud grows no thicker: the shell that a ray must search stays thin."""
+
 LIFETIME = 3600.0
 """Time in which the clouds of a place have become others, s."""
 
@@ -46,7 +49,7 @@ def bake_fields(arguments: dict[str, Any], inputs: dict[str, Arrays], progress: 
     Returns:
         `fields` (2, N, N) float32 of mean 0 and variance 1, both periodic, or (1, N, N) for a user's map;
         `systems` (N, N) float32 in [0, 1], the cover of the weather systems, periodic, 1 at its corner; `reach` (),
-        bound of what the fields can be at any moment.
+        the greatest value of a user's map.
     """
     kind = arguments["kind"]
     progress(0.1, "drawing the clouds")
@@ -60,8 +63,7 @@ def bake_fields(arguments: dict[str, Any], inputs: dict[str, Arrays], progress: 
     fields = np.stack([_field(rng, arguments) for _ in range(2)])
     progress(0.7, "drawing the weather systems")
     systems = _systems(rng).astype(np.float32) if arguments["systems"] else everywhere
-    # A cos + B sin is at most the root of the squares' sum.
-    return {"fields": fields.astype(np.float32), "systems": systems, "reach": np.array(np.hypot(*fields).max())}
+    return {"fields": fields.astype(np.float32), "systems": systems, "reach": np.array(0.0)}
 
 
 def _own(arguments: dict[str, Any]) -> np.ndarray:
@@ -137,6 +139,8 @@ def _smooth(field: np.ndarray, texels: float) -> np.ndarray:
 def thickness_map(clouds: Any, baked: Mapping[str, np.ndarray], time: float) -> np.ndarray:
     """Thickness at a moment as a share of the layer's, (N, N) float32, row 0 at the south.
 
+    Between clouds it goes on below zero: whoever reads between texels cuts there, and edges are smooth lines.
+
     Args:
         clouds: the document's map. baked: of `bake_fields`. time: s.
     """
@@ -149,13 +153,16 @@ def thickness_map(clouds: Any, baked: Mapping[str, np.ndarray], time: float) -> 
     field = fields[0] * math.cos(turn) + fields[1] * math.sin(turn)
     # The cover's share of a normal distribution lies above the threshold; edges rise softly, and tops vary.
     threshold = math.sqrt(2.0) * float(erfinv(np.clip(1.0 - 2.0 * clouds.cover, -0.9999999, 0.9999999)))
-    rise = 1.0 - np.exp(-np.clip(field - threshold, 0.0, None) / EDGE)
-    return (rise * np.exp(clouds.variation * field - 0.5 * clouds.variation**2)).astype(np.float32)
+    above = (field - threshold) / EDGE
+    rise = np.where(above > 0.0, -np.expm1(-np.abs(above)), np.expm1(-np.abs(above)))
+    swell = SWELLS * np.tanh(field / SWELLS)
+    return (rise * np.exp(clouds.variation * swell - 0.5 * clouds.variation**2)).astype(np.float32)
 
 
 def highest(clouds: Any, baked: Mapping[str, np.ndarray]) -> float:
     """A bound of the thickness map at every moment, as a share of the layer's thickness."""
     if clouds.kind == "uniform":
         return 1.0
-    reach = float(baked["reach"])
-    return reach if clouds.kind == "asset" else math.exp(clouds.variation * reach - 0.5 * clouds.variation**2)
+    if clouds.kind == "asset":
+        return float(baked["reach"])
+    return math.exp(clouds.variation * SWELLS - 0.5 * clouds.variation**2)

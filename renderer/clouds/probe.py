@@ -50,7 +50,7 @@ def probe(
     share = _bilinear(cover, at * cover.shape[0], repeats)
     return {
         "position": [round(float(place[0]), 1), round(float(place[1]), 1), round(elevation, 1)],
-        "optical_depth": round(share * state.layer.thickness * state.layer.extinction, 3),
+        "optical_depth": round(max(share, 0.0) * state.layer.thickness * state.layer.extinction, 3),
         "sun_elevation": round(math.degrees(math.asin(float(np.clip(up @ direction(state.sun), -1, 1)))), 2),
     }
 

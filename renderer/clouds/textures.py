@@ -20,7 +20,9 @@ def halved(levels: np.ndarray) -> list[np.ndarray]:
     found = []
     while min(levels.shape[:2]) > 1:
         rows, columns = levels.shape[0] // 2, levels.shape[1] // 2
-        levels = levels[: 2 * rows, : 2 * columns].reshape(rows, 2, columns, 2, -1).mean(axis=(1, 3))
+        even, odd = levels[: 2 * rows : 2], levels[1 : 2 * rows : 2]
+        beside = even[:, : 2 * columns] + odd[:, : 2 * columns]
+        levels = 0.25 * (beside[:, ::2] + beside[:, 1::2])
         found.append(levels)
     return found
 
@@ -56,10 +58,12 @@ def moment_map(gl: GL, clouds: Any, fields: Arrays, side: float, time: float) ->
 
 
 def with_slopes(thickness: np.ndarray, side: float) -> np.ndarray:
-    """A periodic map (N, N) with its changes per metre to the east and to the north, (N, N, 4)."""
-    texel = side / thickness.shape[0]
-    north, east = ((np.roll(thickness, -1, axis) - np.roll(thickness, 1, axis)) / (2 * texel) for axis in (0, 1))
-    return np.stack([thickness, east, north, np.zeros_like(thickness)], axis=-1)
+    """A periodic map (N, N), what it changes per metre to the east and to the north, and what of it is above zero: the
+    part whose means are thicknesses, (N, N, 4)."""
+    texel = np.float32(side / thickness.shape[0])
+    cloud = np.maximum(thickness, 0)
+    north, east = ((np.roll(cloud, -1, axis) - np.roll(cloud, 1, axis)) / (2 * texel) for axis in (0, 1))
+    return np.stack([thickness, east, north, cloud], axis=-1)
 
 
 def technique_textures(gl: GL, slot: str, arrays: Mapping[str, np.ndarray]) -> dict[str, AnyTexture]:

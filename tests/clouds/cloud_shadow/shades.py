@@ -46,7 +46,7 @@ def shade(
     el, az = np.radians(elevation), np.radians(azimuth)
     sun = (np.sin(az) * np.cos(el), np.cos(az) * np.cos(el), np.sin(el))
     pictures = np.zeros((64, 64, 4), np.float32)
-    pictures[..., 0] = MAP
+    pictures[..., 0] = pictures[..., 3] = MAP
     values = {
         "planet_radius": RADIUS,
         "layer_base": BASE,
