@@ -2,8 +2,7 @@
 
 A kernel K(mu, mu') of azimuthal order m gives the radiance that leaves by mu for unit radiance that comes by mu': for
 a beam of unit irradiance facing the sun, I = 1 / (2 pi) sum over m of (2 - delta_m0) K_m(mu, mu_sun) cos(m phi).
-Layers are joined at Gauss nodes; cosines that are only asked for stand beside these with the weight 0. Nothing is
-absorbed.
+Layers are joined at Gauss nodes; cosines that are only asked for stand beside these with the weight 0.
 """
 
 from __future__ import annotations
@@ -35,16 +34,20 @@ class Streams:
         asked: (k,) cosines at which kernels are wanted.
         nodes: Gauss nodes a side, N; delta-M cuts off the moment 2 N, as the share of an undeflected peak.
         orders: azimuthal orders kept, M.
+        albedo: share of a meeting that is scattered.
 
     Attributes:
         mu, weight: (N + k,) of all directions. wanted: slice of those asked for.
         peak: share f of the peak. moments: (2 N,) of the rest, scaled.
+        kept: optical depth after delta-M over that before, 1 - albedo f.
     """
 
-    def __init__(self, moments: np.ndarray, asked: np.ndarray, nodes: int, orders: int) -> None:
+    def __init__(self, moments: np.ndarray, asked: np.ndarray, nodes: int, orders: int, albedo: float = 1.0) -> None:
         padded = np.pad(moments, (0, max(2 * nodes + 1 - len(moments), 0)))
         self.peak = float(padded[2 * nodes])
         self.moments = (padded[: 2 * nodes] - self.peak) / (1 - self.peak)
+        self.kept = 1 - albedo * self.peak
+        self.albedo = albedo * (1 - self.peak) / self.kept
         x, w = gauss(nodes)
         self.mu = np.concatenate([(x + 1) / 2, asked])
         self.weight = np.concatenate([w / 2, np.zeros(len(asked))])
@@ -52,8 +55,8 @@ class Streams:
         functions = _legendre(self.mu, 2 * nodes, orders)
         scaled = functions * ((2 * np.arange(2 * nodes) + 1) / 2 * self.moments)[None, :, None]
         parity = np.where((np.arange(2 * nodes) + np.arange(orders)[:, None]) % 2, -1.0, 1.0)[..., None]
-        self.forward = np.einsum("mli,mlj->mij", scaled, functions)
-        self.backward = np.einsum("mli,mlj->mij", scaled * parity, functions)
+        self.forward = self.albedo * np.einsum("mli,mlj->mij", scaled, functions)
+        self.backward = self.albedo * np.einsum("mli,mlj->mij", scaled * parity, functions)
 
     def single(self, depth: float) -> Layer:
         """The first order alone, in closed form (formulas a4), of a layer of that depth after delta-M."""
@@ -83,7 +86,7 @@ class Streams:
 
     def layers(self, depths: np.ndarray) -> list[Layer]:
         """A layer of each optical depth (before delta-M)."""
-        scaled = (1 - self.peak) * depths
+        scaled = self.kept * depths
         # Depths that are a power of two apart share their doublings.
         found: dict[float, Layer] = {}
         for depth in sorted(scaled):

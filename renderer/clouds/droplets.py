@@ -25,11 +25,18 @@ BANDS = (650e-9, 550e-9, 450e-9)
 """Wavelengths of red, green and blue, m."""
 
 INDICES: Mapping[float, complex] = {
+    400e-9: 1.339 - 1.86e-9j,
+    425e-9: 1.338 - 1.30e-9j,
     450e-9: 1.337 - 1.02e-9j,
+    475e-9: 1.336 - 9.35e-10j,
     500e-9: 1.335 - 1.00e-9j,
+    525e-9: 1.334 - 1.32e-9j,
     550e-9: 1.333 - 1.96e-9j,
+    575e-9: 1.333 - 3.60e-9j,
     600e-9: 1.332 - 1.09e-8j,
+    625e-9: 1.332 - 1.39e-8j,
     650e-9: 1.331 - 1.64e-8j,
+    675e-9: 1.331 - 2.23e-8j,
     700e-9: 1.331 - 3.35e-8j,
 }
 """Refractive index of water by wavelength [m] (Hale & Querry 1973)."""
@@ -78,8 +85,8 @@ def water_index(wavelength: float) -> complex:
         InputError: a wavelength outside the table.
     """
     known = np.array(sorted(INDICES))
-    if not known[0] <= wavelength <= known[-1]:
-        raise InputError("wavelengths", "outside the table of water's index", "450 to 700 nm")
+    if not known[0] * (1 - 1e-9) <= wavelength <= known[-1] * (1 + 1e-9):
+        raise InputError("wavelengths", "outside the table of water's index", "400 to 700 nm, or an index of its own")
     real = np.interp(wavelength, known, [INDICES[w].real for w in known])
     lost = np.interp(wavelength, known, [-INDICES[w].imag for w in known])
     return complex(real, -lost)
