@@ -8,6 +8,9 @@ import { unitOf } from "./schema.js";
 
 const MENDED = { "holes = fill": { words: "Fill the holes from their rims", reading: { holes: "fill" } } };
 
+/** What a map of one quantity may come as: a picture and a GeoTIFF say nothing of what their numbers are. */
+const MAPS = ["map", "image", "terrain"];
+
 /**
  * Where in the state a file of `kind` may go: `{path, title, reading, patch(asset, reading)}` for every text field made
  * for such a file; `reading` is the schema of what the file may leave unsaid, where the state has a place for that.
@@ -16,8 +19,9 @@ export function placesFor(schema, kind) {
   const found = [];
   for (const [name, node] of schema.fields(schema.root)) {
     const title = node.title ?? humanise(name);
-    const add = (field, patch) => {
-      if ([name, field].includes(kind)) found.push({ path: `${name}.${field}`, title, patch, reading });
+    const add = (field, patch, own) => {
+      const map = MAPS.includes(kind) && field.endsWith("_map");
+      if (map || [name, field].includes(kind)) found.push({ path: `${name}.${field}`, title: map ? own : title, patch, reading });
     };
     let reading = null;
     const sort = schema.sort(node);
@@ -30,7 +34,7 @@ export function placesFor(schema, kind) {
       }
     }
     for (const [field, inner] of sort === "object" ? schema.fields(node) : []) {
-      if (schema.isAsset(inner)) add(field, (asset) => ({ [name]: { [field]: asset } }));
+      if (schema.isAsset(inner)) add(field, (asset) => ({ [name]: { [field]: asset } }), inner.title);
     }
   }
   return found;

@@ -27,11 +27,11 @@ Kind = Literal["terrain", "mesh", "volume", "image", "map"]
 
 READ = (
     f"a terrain (GeoTIFF, 16-bit grey PNG, .npz with elevation), a mesh ({MESH_FORMATS}), a volume (.npz with rgba), "
-    "a map (.npz with density), "
+    f"a map (.npz with {', '.join(QUANTITIES)}), "
     "or a picture (PNG, JPEG, HDR, EXR, .npy)"
 )
 
-WANTED = "elevation (a terrain), rgba (a volume) or density (a map)"
+WANTED = f"elevation (a terrain), rgba (a volume), or a map: {', '.join(QUANTITIES)}"
 """Arrays of which an .npz must have one."""
 
 REFUSED = {

@@ -51,3 +51,13 @@ def test_a_terrain_with_holes_is_filled_where_its_owner_wants_it(page: Page, tmp
     house.settled(page)
     house.until(page, "umbrage.store.document.terrain.kind === 'asset'")
     assert house.state_of(page)["terrain"]["reading"]["holes"] == "fill"
+
+
+def test_a_picture_of_species_is_offered_as_a_map(page: Page, tmp_path: Path) -> None:
+    Image.fromarray(np.array([[1, 2], [3, 0]], np.uint8)).save(tmp_path / "species.png")
+    bring(page, tmp_path / "species.png")
+    assert page.get_by_role("button", name="Use for: density map").is_visible()
+    assert not page.get_by_role("button", name="Use for: terrain").count()
+    page.get_by_role("button", name="Use for: species map").click()
+    house.until(page, "umbrage.store.document.cover.species_map.startsWith('asset:')")
+    page.evaluate("umbrage.store.change({ cover: { species_map: '' } }, 'test')")  # nothing is to be planted for this
