@@ -60,8 +60,11 @@ class Streams:
 
     def single(self, depth: float) -> Layer:
         """The first order alone, in closed form (formulas a4), of a layer of that depth after delta-M."""
-        return Layer(self.backward * reflected(depth, self.mu[:, None], self.mu),
-                     self.forward * transmitted(depth, self.mu[:, None], self.mu), depth)
+        return Layer(
+            self.backward * reflected(depth, self.mu[:, None], self.mu),
+            self.forward * transmitted(depth, self.mu[:, None], self.mu),
+            depth,
+        )
 
     def thin(self, depth: float) -> Layer:
         """A layer so thin that light scatters twice at most."""
@@ -69,8 +72,11 @@ class Streams:
         back, on = self.backward / self.mu[:, None], self.forward / self.mu[:, None]
         w = self.weight[:, None]
         half = depth**2 / 2
-        return Layer(once.reflection + half * (on @ (w * back) + back @ (w * on)),
-                     once.transmission + half * (on @ (w * on) + back @ (w * back)), depth)
+        return Layer(
+            once.reflection + half * (on @ (w * back) + back @ (w * on)),
+            once.transmission + half * (on @ (w * on) + back @ (w * back)),
+            depth,
+        )
 
     def doubled(self, layer: Layer) -> Layer:
         """Two equal layers, one on the other."""
@@ -81,8 +87,11 @@ class Streams:
         between = np.linalg.solve(np.eye(len(self.mu)) - bounced * self.weight, bounced)
         down = t + between * direct + between @ (w * t)
         up = r * direct + r @ (w * down)
-        return Layer(r + direct[:, None] * up + t @ (w * up), direct[:, None] * down + t * direct + t @ (w * down),
-                     2 * layer.depth)
+        return Layer(
+            r + direct[:, None] * up + t @ (w * up),
+            direct[:, None] * down + t * direct + t @ (w * down),
+            2 * layer.depth,
+        )
 
     def layers(self, depths: np.ndarray) -> list[Layer]:
         """A layer of each optical depth (before delta-M)."""

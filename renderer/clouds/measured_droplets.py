@@ -28,22 +28,36 @@ class MieArguments(Model):
     """A distribution of droplets, and the light that meets them."""
 
     radius: float = param(
-        10.0, label="Droplet radius", help="Mean radius; the median of a lognormal distribution.", unit="um",
-        cost="host", ge=0.05, le=50,
+        10.0,
+        label="Droplet radius",
+        help="Mean radius; the median of a lognormal distribution.",
+        unit="um",
+        cost="host",
+        ge=0.05,
+        le=50,
     )
     distribution: Distribution = param(
         "normal", label="Distribution", help="How the number of droplets spreads over radii.", cost="host"
     )
     width: float = param(
-        0.1, label="Width", help="Standard deviation over the mean; of a lognormal distribution, exp of that of the "
-                                 "logarithm, " "less 1.", unit="ratio", cost="host", ge=0.005, le=0.5,
+        0.1,
+        label="Width",
+        help="Standard deviation over the mean; of a lognormal distribution, exp of that of the logarithm, less 1.",
+        unit="ratio",
+        cost="host",
+        ge=0.005,
+        le=0.5,
     )
     wavelengths: Annotated[tuple[Nanometres, ...], Field(min_length=1, max_length=16)] = param(
         (450.0, 550.0, 650.0), label="Wavelengths", help="In vacuum, in nanometres.", cost="host"
     )
     indices: Annotated[tuple[Index, ...], Field(max_length=16)] = param(
-        (), label="Refractive indices", help="Real part, and absorbing part as a positive number, for each "
-                                             "wavelength; those of " "water where none is given.", cost="host",
+        (),
+        label="Refractive indices",
+        help="Real part, and absorbing part as a positive number, for each "
+        "wavelength; those of "
+        "water where none is given.",
+        cost="host",
     )
 
 
@@ -62,8 +76,11 @@ def _mie(arguments: MieArguments, files: Mapping[str, Path], progress: Progress)
     columns: dict[str, list[float]] = {}
     for number, wavelength in enumerate(given.wavelengths):
         progress(number / len(given.wavelengths), f"{wavelength:g} nm")
-        index = complex(given.indices[number][0], -given.indices[number][1]) if given.indices else (
-            water_index(wavelength * 1e-9))
+        index = (
+            complex(given.indices[number][0], -given.indices[number][1])
+            if given.indices
+            else (water_index(wavelength * 1e-9))
+        )
         found = scattering(sizes, wavelength * 1e-9, index)
         moments = found["moments"]
         name = f"{given.distribution}_{round(100 * given.width):02d}pct_{wavelength:g}nm"
@@ -72,15 +89,22 @@ def _mie(arguments: MieArguments, files: Mapping[str, Path], progress: Progress)
         seen = bows(moments, SUN_RADIUS)
         arrays[f"{name}_glory_deg"] = np.degrees(np.array(seen.glory))
         for column, value in (
-            ("refractive_index", index.real), ("absorbing_index", -index.imag), ("g", found["asymmetry"]),
-            ("Qext", found["efficiency"]), ("Qsca", found["scattering_efficiency"]), ("ssa", found["albedo"]),
+            ("refractive_index", index.real),
+            ("absorbing_index", -index.imag),
+            ("g", found["asymmetry"]),
+            ("Qext", found["efficiency"]),
+            ("Qsca", found["scattering_efficiency"]),
+            ("ssa", found["albedo"]),
             ("effective_radius_um", 1e6 * found["effective_radius_m"]),
-            ("forward_5deg", share_within(moments, FORWARD_ANGLE)), ("fogbow_deg", np.degrees(seen.fogbow)),
+            ("forward_5deg", share_within(moments, FORWARD_ANGLE)),
+            ("fogbow_deg", np.degrees(seen.fogbow)),
         ):
             columns.setdefault(column, []).append(float(value))
     arrays |= {name: np.array(values) for name, values in columns.items()}
-    notes = ("phase functions are unpolarised means weighted by scattering cross-section, integral over the sphere 1",
-             "fogbow and glory: angle from the antisolar point, averaged over the sun's disc of 0.533 degrees")
+    notes = (
+        "phase functions are unpolarised means weighted by scattering cross-section, integral over the sphere 1",
+        "fogbow and glory: angle from the antisolar point, averaged over the sun's disc of 0.533 degrees",
+    )
     return Values(arrays, notes)
 
 
@@ -107,7 +131,8 @@ MIE = Quantity(
     source="Mie 1908; Wiscombe 1980; water: Hale and Querry 1973",
     error={
         "*_P": "1e-9 relative for the sampled radii; sharp resonances between these move it by up to 2 % behind 150 "
-               "degrees", "*_leg": "1e-10; from the sampling of radii 2e-4",
+        "degrees",
+        "*_leg": "1e-10; from the sampling of radii 2e-4",
         "g, Qext, Qsca": "1e-8; from the sampling of radii 2e-4",
     },
 )

@@ -106,10 +106,12 @@ def _band(streams: Streams, tau: np.ndarray) -> dict[str, np.ndarray]:
     node = slice(0, streams.wanted.start)
     weight = (streams.weight * streams.mu)[node]
     return {
-        "leaving": np.stack([
-            [(a.reflection - b.reflection)[wanted] for a, b in zip(layers, once)],
-            [(a.transmission - b.transmission)[wanted] for a, b in zip(layers, once)],
-        ]),
+        "leaving": np.stack(
+            [
+                [(a.reflection - b.reflection)[wanted] for a, b in zip(layers, once)],
+                [(a.transmission - b.transmission)[wanted] for a, b in zip(layers, once)],
+            ]
+        ),
         "flux": np.stack([streams.hemispherical(layer.reflection) for layer in layers]),
         # Even light of radiance 1 / pi: the mean over its directions, weighted by their cosine.
         "even": np.array([2 * weight @ layer.reflection[0][node, node] @ streams.weight[node] for layer in layers]),

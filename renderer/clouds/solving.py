@@ -73,9 +73,7 @@ def solve(
     return found
 
 
-def _first(
-    moments: np.ndarray, kept: np.ndarray, streams: Streams, albedo: float, slab: Slab, up: bool
-) -> np.ndarray:
+def _first(moments: np.ndarray, kept: np.ndarray, streams: Streams, albedo: float, slab: Slab, up: bool) -> np.ndarray:
     """Order 1 of the scaled layer with the true phase function; below, with what the forward peak makes of it
     (formulas a3)."""
     value = albedo * values_of(moments, slab.cosine)

@@ -52,32 +52,49 @@ vec3 air_extinction(float altitude, out vec3 rayleigh, out float mie) {
     return rayleigh + AIR_MIE_LOST * particles + AIR_OZONE * max(0.0, 1.0 - abs(height - 25.0) / 15.0);
 }
 
-// The part of a ray that lies in the air, and how its points are spread: close where it is lowest.
+// The part of a ray that lies in the air, and how its points are spread: close where light changes along it. From a camera low
+// in the air that is near by, where land stands before the sky: points lie by the cube of their share up to the horizon, the
+// same on both sides of it, and evenly behind. From above it is where the ray comes nearest to the ground.
 struct AirRay {
     float start;  // m
     float end;
-    float lowest; // m, where it comes nearest to the ground
+    float lowest; // m, where it comes nearest to the ground, or as far as the horizon
     float before; // roots of the lengths before and behind that point
     float behind;
+    bool near;
 };
 
 const float AIR_POWER = 2.5;
+const float AIR_LOW = 6000.0;                    // m, up to which a camera is low in the air
+const float AIR_NEAR = 1.5e5, AIR_SPLIT = 0.75;  // m, least length of the part spread by cubes; its share of the points
 
 // stop: m, where the ground ends the ray; NEVER where it does not.
 AirRay air_ray(Path path, float stop) {
     vec2 ends = path_distances(path, AIR_CEILING);
     float start = max(ends.x, 0.0), end = max(min(ends.y, stop), start);
+    if (path.altitude < AIR_LOW) {
+        float horizon = sqrt(max(path.excess, 0.0));
+        return AirRay(0.0, end, min(end, max(horizon, AIR_NEAR)), 0.0, 0.0, true);
+    }
     float lowest = clamp(-path.along, start, end);
-    return AirRay(start, end, lowest, pow(lowest - start, 1.0 / AIR_POWER), pow(end - lowest, 1.0 / AIR_POWER));
+    return AirRay(start, end, lowest, pow(lowest - start, 1.0 / AIR_POWER), pow(end - lowest, 1.0 / AIR_POWER), false);
 }
 
 // Distance (m) of the point at a share of the way, and the other way round.
 float air_distance(AirRay ray, float share) {
+    if (ray.near) {
+        float s = min(share / AIR_SPLIT, 1.0);
+        return ray.lowest * s * s * s + (ray.end - ray.lowest) * max(share - AIR_SPLIT, 0.0) / (1.0 - AIR_SPLIT);
+    }
     float s = mix(-ray.before, ray.behind, share);
     return ray.lowest + sign(s) * pow(abs(s), AIR_POWER);
 }
 
 float air_share(AirRay ray, float t) {
+    if (ray.near) {
+        float s = pow(clamp(t / max(ray.lowest, 1.0), 0.0, 1.0), 1.0 / 3.0);
+        return AIR_SPLIT * s + (1.0 - AIR_SPLIT) * clamp((t - ray.lowest) / max(ray.end - ray.lowest, 1.0), 0.0, 1.0);
+    }
     float from = clamp(t, ray.start, ray.end) - ray.lowest;
     float s = sign(from) * pow(abs(from), 1.0 / AIR_POWER);
     return clamp((s + ray.before) / max(ray.before + ray.behind, 1.0e-20), 0.0, 1.0);

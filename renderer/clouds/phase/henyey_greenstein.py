@@ -39,5 +39,10 @@ class HenyeyGreenstein(PhaseTechnique):
         """Its moments are the powers of the mean cosine."""
         with np.errstate(under="ignore"):
             moments = self.asymmetry ** np.arange(MOMENTS, dtype=np.float64)
-        return Bake("phase", bake_moments, {"moments": moments[(moments > 1e-12) | (np.arange(MOMENTS) < 2)].tolist()},
-                    version=3, seconds=0.5)
+        return Bake(
+            "phase",
+            bake_moments,
+            {"moments": moments[(moments > 1e-12) | (np.arange(MOMENTS) < 2)].tolist()},
+            version=3,
+            seconds=0.5,
+        )

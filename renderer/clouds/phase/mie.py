@@ -37,8 +37,13 @@ class Mie(PhaseTechnique):
         "normal", label="Distribution", help="How the number of droplets spreads over radii.", cost="bake"
     )
     width: float = param(
-        0.1, label="Width", help="Standard deviation of the radii over their mean.", unit="ratio", cost="bake",
-        ge=0.005, le=0.5,
+        0.1,
+        label="Width",
+        help="Standard deviation of the radii over their mean.",
+        unit="ratio",
+        cost="bake",
+        ge=0.005,
+        le=0.5,
     )
     sun_disc: bool = param(
         True, label="Disc of the sun", help="Whether rings are blurred by the sun's own size.", cost="bake"

@@ -48,8 +48,9 @@ def bounce(
         from_ground, from_cloud = albedo * term[0], reflectance * term[1]
         terms = [*terms[-3:], term]
     if tail and len(terms) == 4:
-        ground, cloud = (total + series_tail([pair[side] for pair in terms])
-                         for side, total in enumerate((ground, cloud)))
+        ground, cloud = (
+            total + series_tail([pair[side] for pair in terms]) for side, total in enumerate((ground, cloud))
+        )
     return ground, cloud
 
 

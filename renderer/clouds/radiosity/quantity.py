@@ -19,18 +19,54 @@ Radius = Annotated[float, Field(ge=0.5, le=64)]
 class RadiosityArguments(Model):
     """Two planes, and how the light between them is computed."""
 
-    ground_albedo: float = param(0.3, label="Ground albedo", help="Share that the ground reflects, diffusely.",
-                                 unit="ratio", cost="host", ge=0, le=1, source="Belcour 2009, section 5.1.3")
-    cloud_albedo: float = param(0.9, label="Cloud albedo", help="Share that the cloud base reflects, diffusely.",
-                                unit="ratio", cost="host", ge=0, le=1, source="Belcour 2009, section 5.1.3")
-    distance: float = param(2500.0, label="Distance", help="From the ground up to the cloud base.", unit="m",
-                            cost="host", ge=1, le=100_000, source="Belcour 2009, section 5.1.2")
-    radii: Annotated[tuple[Radius, ...], Field(min_length=1, max_length=16)] = param(
-        (16.0,), label="Radii", help="Of the discs to which both planes are cut, in distances between them.",
-        unit="ratio", cost="host", source="Belcour 2009, annex A.1",
+    ground_albedo: float = param(
+        0.3,
+        label="Ground albedo",
+        help="Share that the ground reflects, diffusely.",
+        unit="ratio",
+        cost="host",
+        ge=0,
+        le=1,
+        source="Belcour 2009, section 5.1.3",
     )
-    bounces: int = param(8, label="Bounces", help="From the cloud to the ground and back; sums after each are given.",
-                         unit="count", cost="host", ge=1, le=64, source="Belcour 2009, section 5.2.1")
+    cloud_albedo: float = param(
+        0.9,
+        label="Cloud albedo",
+        help="Share that the cloud base reflects, diffusely.",
+        unit="ratio",
+        cost="host",
+        ge=0,
+        le=1,
+        source="Belcour 2009, section 5.1.3",
+    )
+    distance: float = param(
+        2500.0,
+        label="Distance",
+        help="From the ground up to the cloud base.",
+        unit="m",
+        cost="host",
+        ge=1,
+        le=100_000,
+        source="Belcour 2009, section 5.1.2",
+    )
+    radii: Annotated[tuple[Radius, ...], Field(min_length=1, max_length=16)] = param(
+        (16.0,),
+        label="Radii",
+        help="Of the discs to which both planes are cut, in distances between them.",
+        unit="ratio",
+        cost="host",
+        source="Belcour 2009, annex A.1",
+    )
+    bounces: int = param(
+        8,
+        label="Bounces",
+        help="From the cloud to the ground and back; sums after each are given.",
+        unit="count",
+        cost="host",
+        ge=1,
+        le=64,
+        source="Belcour 2009, section 5.2.1",
+    )
     technique: Literal["exact", "fft", "three_level"] = param(
         "exact", label="Technique", help="Quadrature over the radius, or a technique of the slot `bounce`.", cost="host"
     )
@@ -50,12 +86,19 @@ def _radiosity(arguments: RadiosityArguments, files: Mapping[str, Path], progres
 
         found = two_planes(given.technique, given.ground_albedo, given.cloud_albedo, radius, given.bounces, exchange)
         name = f"Rc{radius:g}"
-        arrays |= {f"r_over_H_{name}": found.radii, f"r_{name}_m": found.radii * given.distance,
-                   f"ground_cum_{name}": found.ground, f"cloud_cum_{name}": found.cloud}
+        arrays |= {
+            f"r_over_H_{name}": found.radii,
+            f"r_{name}_m": found.radii * given.distance,
+            f"ground_cum_{name}": found.ground,
+            f"cloud_cum_{name}": found.cloud,
+        }
         if given.ground_albedo > 0:
             arrays[f"err_ground_{name}"] = found.ground_error
-        arrays |= {f"err_cloud_{name}": found.cloud_error, "exact_ground_cum": found.endless_ground,
-                   "exact_cloud_cum": found.endless_cloud}
+        arrays |= {
+            f"err_cloud_{name}": found.cloud_error,
+            "exact_ground_cum": found.endless_ground,
+            "exact_cloud_cum": found.endless_cloud,
+        }
     product = given.ground_albedo * given.cloud_albedo
     notes = ["the cloud starts with radiosity 1, the ground with 0; sums after each bounce, the start included"]
     if product < 1:
@@ -81,7 +124,7 @@ RADIOSITY = Quantity(
         "endless_ground, endless_cloud": "endless planes, all bounces",
     },
     technique="as asked: exact (Gauss-Legendre over the radius, the azimuth in closed form), fft (exact kernel over "
-              "square cells of a quarter of the distance), three_level (mip levels of H, 2H and 8H)",
+    "square cells of a quarter of the distance), three_level (mip levels of H, 2H and 8H)",
     source="Belcour 2009, sections 5.1.2, 5.2.2 and annex A.1; Bouthors, Neyret and Lefebvre 2006 (three levels)",
     error={
         "exact": "1e-13 of each sum",

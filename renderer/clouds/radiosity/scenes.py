@@ -43,10 +43,13 @@ def validation_scenes(n: int = 128) -> tuple[ValidationScene, ...]:
     snow = np.where(np.abs(far - 6) < 2, SNOW, GROUND)
     return (
         ValidationScene("uniform", "uniform cloud over level ground", level, GROUND * one, CLOUD * one, one),
-        ValidationScene("square", "square cloud of side 16H over level ground", level, GROUND * one, CLOUD * square,
-                        square),
-        ValidationScene("cone", "uniform cloud over a cone 0.6H high of radius 4H", cone, GROUND * one, CLOUD * one,
-                        one),
-        ValidationScene("ring", "uniform cloud over bright mountains 0.6H high, 6H around the middle", ring, snow,
-                        CLOUD * one, one),
+        ValidationScene(
+            "square", "square cloud of side 16H over level ground", level, GROUND * one, CLOUD * square, square
+        ),
+        ValidationScene(
+            "cone", "uniform cloud over a cone 0.6H high of radius 4H", cone, GROUND * one, CLOUD * one, one
+        ),
+        ValidationScene(
+            "ring", "uniform cloud over bright mountains 0.6H high, 6H around the middle", ring, snow, CLOUD * one, one
+        ),
     )

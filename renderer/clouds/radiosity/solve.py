@@ -26,8 +26,10 @@ class Answers:
     @classmethod
     def of(cls, ground: Basis, cloud: Basis, albedo: np.ndarray, reflectance: np.ndarray) -> Answers:
         """From maps (..., GRID, GRID)."""
-        return cls(ground.multiply(ground.means(albedo)).astype(np.float32),
-                   cloud.multiply(cloud.means(reflectance)).astype(np.float32))
+        return cls(
+            ground.multiply(ground.means(albedo)).astype(np.float32),
+            cloud.multiply(cloud.means(reflectance)).astype(np.float32),
+        )
 
 
 def direct(
@@ -53,7 +55,11 @@ def direct(
 
 
 def by_bounces(
-    transfer: Transfer, answers: Answers, ground_first: np.ndarray, cloud_first: np.ndarray, half_bounces: int,
+    transfer: Transfer,
+    answers: Answers,
+    ground_first: np.ndarray,
+    cloud_first: np.ndarray,
+    half_bounces: int,
     tail: bool = False,
 ) -> tuple[np.ndarray, np.ndarray]:
     """A fixed number of half-bounces in Jacobi order (Belcour 2009, section 5.2.3; errata 001-20).
@@ -65,14 +71,17 @@ def by_bounces(
     ground, cloud = np.zeros_like(ground_first), np.zeros_like(cloud_first)
     terms: list[tuple[np.ndarray, np.ndarray]] = []
     for _ in range(half_bounces):
-        term = (_times(transfer.from_cloud, from_cloud) + _times(transfer.on_ground, from_ground),
-                _times(transfer.from_ground, from_ground))
+        term = (
+            _times(transfer.from_cloud, from_cloud) + _times(transfer.on_ground, from_ground),
+            _times(transfer.from_ground, from_ground),
+        )
         ground, cloud = ground + term[0], cloud + term[1]
         from_ground, from_cloud = _times(answers.ground, term[0]), _times(answers.cloud, term[1])
         terms = [*terms[-3:], term]
     if tail and len(terms) == 4:
-        ground, cloud = (total + series_tail([pair[side] for pair in terms], (-1,))
-                         for side, total in enumerate((ground, cloud)))
+        ground, cloud = (
+            total + series_tail([pair[side] for pair in terms], (-1,)) for side, total in enumerate((ground, cloud))
+        )
     return ground, cloud
 
 
@@ -84,6 +93,7 @@ def by_gmres(
     Raises:
         InputError: it does not end.
     """
+
     def there(light: np.ndarray) -> np.ndarray:
         reflected = answers.cloud @ (transfer.from_ground @ light)
         return transfer.from_cloud @ reflected + transfer.on_ground @ light

@@ -112,8 +112,11 @@ def flat_transfer(ground: Basis, cloud: Basis, detail: Detail = PLAIN) -> Transf
     level = np.ones((GRID, GRID))
     below, above = _Side.of(ground, *detail.ground(), level), _Side.of(cloud, *detail.cloud(), level)
     from_cloud, from_ground = _flat_parts(below, above), _flat_parts(above, below)
-    return Transfer(_transformed(from_cloud, ground, cloud), _transformed(from_ground, cloud, ground),
-                    np.zeros((ground.n, ground.n), np.float32))
+    return Transfer(
+        _transformed(from_cloud, ground, cloud),
+        _transformed(from_ground, cloud, ground),
+        np.zeros((ground.n, ground.n), np.float32),
+    )
 
 
 def _flat_parts(to: _Side, of: _Side, chunk: int = 64) -> np.ndarray:
@@ -143,8 +146,9 @@ def relief_transfer(hits: Hits, ground: Basis, cloud: Basis, detail: Detail = PL
     down = _counted(hits.cloud, above, slopes, 0)
     down += _flat_parts(above, below) - _counted(hits.level_cloud, above, below, 0)
     (sky, land), (down,) = _shares((sky, above), (land, slopes)), _shares((down, slopes))
-    return Transfer(_transformed(sky, ground, cloud), _transformed(down, cloud, ground),
-                    _transformed(land, ground, ground))
+    return Transfer(
+        _transformed(sky, ground, cloud), _transformed(down, cloud, ground), _transformed(land, ground, ground)
+    )
 
 
 def _shares(*parts: tuple[np.ndarray, _Side]) -> list[np.ndarray]:

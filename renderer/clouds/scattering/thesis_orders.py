@@ -78,5 +78,3 @@ class ThesisModel(ClosedModel):
     def diffuse_reflectance(self, depth: np.ndarray) -> np.ndarray:
         """See `SlabModel.diffuse_reflectance`: along twice the depth, the mean path of even light."""
         return self.reflectance(depth, np.array(0.5))
-
-
