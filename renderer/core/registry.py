@@ -57,8 +57,8 @@ def slot_union(phenomenon: str, slot: str) -> Any:
 
 @functools.cache
 def phenomena() -> dict[str, Phenomenon]:
-    """Every phenomenon of the checkout by name, in their own order: each package `renderer/<name>/phenomenon.py` with its
-    `PHENOMENON`."""
+    """Every phenomenon of the checkout by name, in their own order: each package `renderer/<name>/phenomenon.py` with
+    its `PHENOMENON`."""
     found = {}
     for entry in sorted(Path(renderer.__file__).parent.iterdir()):
         if (entry / "phenomenon.py").is_file():
