@@ -35,8 +35,8 @@ def world_arrays(state: CloudsState, baked: Mapping[str, Arrays]) -> dict[str, A
         [m] of the land, row 0 at the south, nodes `land_cell` [m] apart round the site. Layer: `base`, `thickness`
         [m], `extinction` [1/m]; `cloud_map` (N, N), thickness as a share of the layer's, row 0 at the south, cut at
         zero once it is read, over a square of `cloud_side` [m] round the site, which `cloud_repeats` or not and has
-        been carried by `cloud_drift` (2,) [m]; `systems` (N, N), a further share, over `systems_side` [m], its corner at
-        the site, repeated. Maps are read at the stereographic place of a point, bilinearly between texels. Light:
+        been carried by `cloud_drift` (2,) [m]; `systems` (N, N), a further share, over `systems_side` [m], its corner
+        at the site, repeated. Maps are read at the stereographic place of a point, bilinearly between texels. Light:
         `sun` (3,), `sun_irradiance` above the air [W m-2], `haze` of the air, and `wide_albedo`, the ground that its
         multiply scattered light is computed over. `background`, zero: the reference draws the sky itself.
     """
