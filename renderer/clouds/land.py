@@ -7,6 +7,7 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
+from scipy.ndimage import maximum_filter
 
 from renderer.clouds.world_scale import LAND_CELL, LAND_NODES, LAND_RIM
 from renderer.core.cache import AssetStore
@@ -14,6 +15,9 @@ from renderer.core.errors import InputError
 from renderer.core.technique import Arrays
 from renderer.world.horizon_sweep import sweeps
 from renderer.world.terrain import TerrainReading, crop, default_terrain, load_terrain
+
+COARSE_CELLS = 64
+"""Coarse cells a side of the land: a ray above the highest land of one and its neighbours leaps over it."""
 
 HORIZON_AZIMUTHS = 64
 """Azimuths in which the land's horizon is kept."""
@@ -41,12 +45,13 @@ def bake_land(arguments: dict[str, Any], inputs: dict[str, Arrays], progress: Ca
         "height": height[::-1].copy(),
         "top": np.array(float(height.max())),
         "steepness": np.array(_steepness(height)),
+        "tops": _tops(height)[::-1].copy(),
         "horizon": _horizons(height, progress),
     }
 
 
 def horizon_towards(land: Arrays, azimuth: float) -> np.ndarray:
-    """Elevation of the horizon [rad] towards an azimuth [rad], (N / 2, N / 2), between the two nearest of the bake."""
+    """Sine of the horizon's elevation towards an azimuth [rad], (N / 2, N / 2), between the two nearest of the bake."""
     horizon = land["horizon"]
     place = azimuth / (2 * math.pi) * len(horizon) % len(horizon)
     low = int(place)
@@ -61,7 +66,13 @@ def _horizons(height: np.ndarray, progress: Callable[[float, str], None]) -> np.
     found = np.empty((HORIZON_AZIMUTHS, *coarse.shape), np.float32)
     for number, slopes in sweeps(coarse, (2 * LAND_CELL, 2 * LAND_CELL), azimuths):
         progress(0.2 + 0.8 * number / HORIZON_AZIMUTHS, "horizon of the land")
-        found[number] = np.arctan(np.maximum(slopes, -1.0))[::-1]
+        found[number] = np.sin(np.arctan(np.maximum(slopes, -1.0)))[::-1]
+    return found
+
+
+def _tops(height: np.ndarray) -> np.ndarray:
+    cells = height.reshape(COARSE_CELLS, LAND_NODES // COARSE_CELLS, COARSE_CELLS, -1).max(axis=(1, 3))
+    found: np.ndarray = maximum_filter(cells, 3, mode="nearest").astype(np.float32)
     return found
 
 

@@ -41,7 +41,7 @@ SLOTS = (
         "cloud_shadow",
         "Cloud shadow",
         "What the layer leaves to the ground.",
-        "Shade cloud_shadow(vec3 point, float altitude, float mu) // shares of sun and sky",
+        "Shade cloud_shadow(vec3 point, float altitude, float mu, float overhead) // shares of sun and sky",
         DEFAULTS["cloud_shadow"],
     ),
     Slot(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from renderer.clouds.planet import Layer, Planet
@@ -22,7 +23,7 @@ LAND_STEPS = 96
 AIR_STEPS = 8
 """Points of each stretch of air, where a parallel view has to walk it."""
 
-AIR_AROUND, AIR_ROWS, AIR_SLICES = 32, 64, 12
+AIR_AROUND, AIR_ROWS, AIR_SLICES = 24, 64, 10
 """Azimuths, directions and distances of the table of the air, as in shaders/clouds/air_table.glsl."""
 
 WORLD_DECLARATIONS = """uniform sampler2D air_beam;
@@ -31,12 +32,18 @@ uniform sampler2D air_skylight;
 uniform sampler2D globe_albedo;
 uniform sampler2D land_heights;
 uniform sampler2D land_horizon;
+uniform sampler2D land_tops;       // m
 uniform sampler2D cloud_map;
 uniform sampler2D cloud_systems;
 uniform sampler2D air_light;      // of the camera's place, W m-2 sr-1
 uniform sampler2D air_passed;     // optical depths of the same
-uniform sampler2D traced;         // distance to the ground, m, and its normal
+uniform sampler2D traced_ground;   // distance to the ground, m, and its normal
 uniform sampler2D traced_albedo;
+uniform sampler2D traced_first;    // stretches inside the layer: middle, m, optical depth, thickness, m, apparent cosine
+uniform sampler2D traced_second;
+uniform sampler2D traced_slopes;   // of their upper sides
+uniform sampler2D traced_overhead; // thickness over the ground, m
+uniform vec2 camera_excess;        // m2, a pair
 uniform vec3 air_up;              // of the camera
 uniform vec3 air_ahead;           // level, towards the sun
 uniform float air_horizon;        // rad from the zenith
@@ -46,6 +53,7 @@ uniform vec3 globe_east;          // unit vectors of the Earth's axes in the sit
 uniform vec3 globe_north;
 uniform vec3 globe_up;
 uniform float land_cell;          // m
+uniform float land_reach;         // m
 uniform float land_top;           // m, nothing of the land is higher
 uniform float land_steepness;     // greatest rise over run
 uniform float layer_highest;      // greatest thickness against the layer's
@@ -59,22 +67,49 @@ uniform float pixel_angle;        // rad, width of a pixel in perspective
 uniform vec2 picture_size;
 uniform vec2 pixel_offset;        // of the sample within its pixel, from the top-left corner"""
 
-RAY_OF_PIXEL = """void pixel_ray(out vec3 origin, out vec3 direction) {
+RAY_OF_PIXEL = """Path pixel_path(out vec3 origin, out vec3 direction) {
     camera_ray(picture_pixel(gl_FragCoord.xy, picture_size) - 0.5 + pixel_offset, origin, direction);
+#if AIR_TABLE == 1
+    return path_from(origin, camera_excess, direction);
+#else
+    return path_of(origin, direction);
+#endif
 }
 """
 
-TRACE_BODY = """layout(location = 0) out vec4 found;
+GROUND_BODY = """layout(location = 0) out vec4 found;
 layout(location = 1) out vec4 albedo;
 void main() {
     vec3 origin, direction;
-    pixel_ray(origin, direction);
-    Path path = path_of(origin, direction);
+    Path path = pixel_path(origin, direction);
     float t = ground_distance(path, origin, direction, pixel_angle);
     vec3 point = origin + t * direction, up = up_at(point);
     vec2 place = place_of(point);
     found = t < NEVER ? vec4(t, land_normal(place, up)) : vec4(-1.0);
     albedo = vec4(ground_albedo(point, up, place, path_altitude(path, t), pixel_angle * t), 1.0);
+}"""
+
+LAYER_BODY = """layout(location = 0) out vec4 first;
+layout(location = 1) out vec4 second;
+layout(location = 2) out vec4 slopes;
+layout(location = 3) out float overhead;
+void main() {
+    vec3 origin, direction;
+    Path path = pixel_path(origin, direction);
+    float t = texelFetch(traced_ground, ivec2(gl_FragCoord.xy), 0).x;
+    float stop = t >= 0.0 ? t : NEVER;
+    vec4 legs = layer_legs(path, layer_base, layer_base + max(layer_thickness * layer_highest, 1.0), stop);
+    // Below the base, and above the layer towards the sky, only the stretch behind the lowest point is there.
+    int leg = CAMERA_SIDE < 0 || legs.y <= 0.0 ? 1 : 0;
+    Stretch near = stretch_of(path, origin, direction, leg, leg == 0 ? legs.xy : legs.zw, stop, pixel_angle);
+    first = vec4(near.t, near.depth, near.thickness, near.mu_view);
+    Stretch far = Stretch(0.0, 0.0, 1.0, 1.0, vec2(0.0));
+#if CAMERA_SIDE >= 0
+    far = stretch_of(path, origin, direction, 1, leg == 0 ? legs.zw : vec2(0.0), stop, pixel_angle);
+#endif
+    second = vec4(far.t, far.depth, far.thickness, far.mu_view);
+    slopes = vec4(near.slope, far.slope);
+    overhead = cover_at(place_of(origin + t * direction), max(layer_base, pixel_angle * t)).thickness;
 }"""
 
 AIR_BODY = """layout(location = 0) out vec4 texel;
@@ -85,10 +120,13 @@ void main() {
 SHADE_BODY = """layout(location = 0) out vec4 radiance;
 void main() {
     vec3 origin, direction;
-    pixel_ray(origin, direction);
-    vec4 ground = texelFetch(traced, ivec2(gl_FragCoord.xy), 0);
-    vec3 albedo = texelFetch(traced_albedo, ivec2(gl_FragCoord.xy), 0).rgb;
-    radiance = radiance_along(origin, direction, ground, albedo, pixel_angle);
+    Path path = pixel_path(origin, direction);
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    vec4 ground = texelFetch(traced_ground, pixel, 0), slopes = texelFetch(traced_slopes, pixel, 0);
+    vec4 near = texelFetch(traced_first, pixel, 0), far = texelFetch(traced_second, pixel, 0);
+    radiance = radiance_along(origin, direction, path, ground, texelFetch(traced_albedo, pixel, 0).rgb,
+                              texelFetch(traced_overhead, pixel, 0).r, Stretch(near.x, near.y, near.z, near.w, slopes.xy),
+                              Stretch(far.x, far.y, far.z, far.w, slopes.zw));
 }"""
 
 WORLD_FILES = ("lib/pixel.glsl", "lib/camera.glsl", "clouds/path.glsl", "clouds/layer.glsl", "clouds/air.glsl")
@@ -99,41 +137,68 @@ SHADE_SLOTS = ("geometry", "phase", "scattering", "cloud_shadow", "bounce")
 """Slots whose functions the picture calls, in the order in which they build on each other."""
 
 
-@functools.cache
-def trace_source() -> Source:
+@dataclass(frozen=True)
+class Variant:
+    """What of a picture's case is compiled into its shaders.
+
+    Attributes:
+        sky: whether the sun's disc stands behind.
+        table: whether all rays start at the camera, so that the air's table serves them.
+        side: of the layer where that is: -1 below its base, 1 above all of it, 0 inside or anywhere.
+        twilight: whether the sun may stand below the horizon of what is seen.
+    """
+
+    sky: bool
+    table: bool
+    side: int
+    twilight: bool
+
+
+def ground_source(variant: Variant) -> Source:
     """The fragment stage that finds the ground; no sun and no cloud is in it."""
-    return _world((*WORLD_FILES, "clouds/ground.glsl"), RAY_OF_PIXEL + TRACE_BODY)
+    return _composed((), variant, ("clouds/ground.glsl",), GROUND_BODY)
 
 
-@functools.cache
-def air_source(light: bool) -> Source:
+def layer_source(state: CloudsState, variant: Variant) -> Source:
+    """The fragment stage that finds each ray's stretches inside the layer; no sun is in it."""
+    return _composed(_chosen(state, ("geometry",)), variant, ("clouds/stretch.glsl",), LAYER_BODY)
+
+
+def air_source(variant: Variant, light: bool) -> Source:
     """The fragment stage that fills the table of the air's light as the camera sees it, or of its optical depth."""
-    return _world((*WORLD_FILES, "clouds/air_table.glsl"), AIR_BODY % ("true" if light else "false"))
+    return _composed((), variant, ("clouds/air_table.glsl",), AIR_BODY % ("true" if light else "false"))
 
 
-def _world(files: tuple[str, ...], body: str) -> Source:
-    return assemble(files, defines=_limits(), declarations=world_declarations(), body=body)
+def shade_source(state: CloudsState, variant: Variant) -> Source:
+    """The fragment stage that lights what was traced."""
+    files = ("clouds/air_table.glsl", "clouds/air_look.glsl", "clouds/ground.glsl", "clouds/stretch.glsl")
+    return _composed(
+        _chosen(state, SHADE_SLOTS), variant, (*files, "clouds/cloud.glsl", "clouds/frame.glsl"), SHADE_BODY
+    )
 
 
-def shade_source(state: CloudsState) -> Source:
-    """The fragment stage that draws a picture before and behind the ground that was traced."""
+def _chosen(state: CloudsState, slots: tuple[str, ...]) -> Chosen:
     chosen = state.techniques()
-    parts = tuple((slot, type(chosen[slot]), tuple(defines(chosen[slot], slot).items())) for slot in SHADE_SLOTS)
-    return _composed(parts, state.view.background == "sky", state.camera.kind != "orthographic")
+    return tuple((slot, type(chosen[slot]), tuple(defines(chosen[slot], slot).items())) for slot in slots)
 
 
 @functools.lru_cache(maxsize=256)
-def _composed(chosen: Chosen, sky: bool, table: bool) -> Source:
-    files = [*WORLD_FILES, "clouds/air_table.glsl", "clouds/air_look.glsl", "clouds/ground.glsl"]
+def _composed(chosen: Chosen, variant: Variant, after: tuple[str, ...], body: str) -> Source:
+    files = [*WORLD_FILES]
     declarations = [world_declarations()]
-    macros: dict[str, str | int] = _limits() | {"BACKGROUND_SKY": int(sky), "AIR_TABLE": int(table)}
+    macros: dict[str, str | int] = _limits() | {
+        "BACKGROUND_SKY": int(variant.sky),
+        "AIR_TABLE": int(variant.table),
+        "CAMERA_SIDE": variant.side,
+        "TWILIGHT": int(variant.twilight),
+    }
     for slot, technique, build in chosen:
         files += technique.includes
         files.append(glsl_file("clouds", slot, technique.model_fields["kind"].default))
         declarations += technique_declarations(slot, technique)
         macros.update(build)
-    files += ["clouds/cloud.glsl", "clouds/frame.glsl"]
-    return assemble(files, defines=macros, declarations="\n".join(declarations), body=RAY_OF_PIXEL + SHADE_BODY)
+    files += after
+    return assemble(files, defines=macros, declarations="\n".join(declarations), body=RAY_OF_PIXEL + body)
 
 
 def world_declarations() -> str:

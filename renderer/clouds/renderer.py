@@ -10,13 +10,23 @@ import moderngl
 import numpy as np
 
 from renderer.clouds.cloud_map import highest
-from renderer.clouds.program import AIR_AROUND, AIR_ROWS, AIR_SLICES, air_source, shade_source, trace_source
+from renderer.clouds.land import COARSE_CELLS
+from renderer.clouds.program import (
+    AIR_AROUND,
+    AIR_ROWS,
+    AIR_SLICES,
+    Variant,
+    air_source,
+    ground_source,
+    layer_source,
+    shade_source,
+)
 from renderer.clouds.textures import horizon_texture, moment_map, technique_textures, world_textures
-from renderer.clouds.world_scale import AIR_TOP, LAND_CELL, SYSTEMS_SIDE
+from renderer.clouds.world_scale import AIR_TOP, LAND_CELL, LAND_NODES, SYSTEMS_SIDE
 from renderer.core.params import uniforms
 from renderer.core.technique import Arrays, BakedArrays
 from renderer.gl.context import GL
-from renderer.gl.layers import Layers, LayerStore
+from renderer.gl.layers import Kind, Layers, LayerStore
 from renderer.gl.program import AnyTexture
 from renderer.gl.resident import Resident
 from renderer.gl.source import Source
@@ -31,8 +41,22 @@ if TYPE_CHECKING:
 Baked = Mapping[str, BakedArrays]
 Prepared = tuple[Source, dict[str, AnyTexture], dict[str, Any]]
 
-TRACES_KEPT = 64 << 20
-"""Bytes of traced samples kept: ten of 512 x 512, so that a moved sun only lights them again."""
+GROUND_LAYERS: dict[str, Kind] = {"traced_ground": (4, "f4"), "traced_albedo": (4, "f2")}
+"""What is traced of the ground, and how it is stored."""
+
+LAYER_LAYERS: dict[str, Kind] = {
+    "traced_first": (4, "f4"),
+    "traced_second": (4, "f4"),
+    "traced_slopes": (4, "f2"),
+    "traced_overhead": (1, "f4"),
+}
+"""What is traced of the layer."""
+
+GROUNDS_KEPT, STRETCHES_KEPT = 32 << 20, 48 << 20
+"""Bytes of traced samples kept, so that a moved sun only lights them again: four of 512 x 512."""
+
+LOW_SUN = math.radians(12.0)
+"""Elevation at the camera's place below which a sun may have set for what the camera sees from within the air."""
 
 AIRS_KEPT = 8 << 20
 """Bytes kept of the air's tables: those of the last few cameras and suns."""
@@ -48,7 +72,8 @@ class CloudsRenderer:
         self._gl = gl
         self._baked = Resident(gl, 24)
         self._moment = Resident(gl, 24, MOMENTS_KEPT)
-        self._traces = LayerStore(gl, ((4, "f4"), (4, "f2")), TRACES_KEPT)
+        self._grounds = LayerStore(gl, tuple(GROUND_LAYERS.values()), GROUNDS_KEPT)
+        self._stretches = LayerStore(gl, tuple(LAYER_LAYERS.values()), STRETCHES_KEPT)
         self._airs = LayerStore(gl, ((4, "f4"),), AIRS_KEPT)
 
     def prepare(
@@ -65,24 +90,53 @@ class CloudsRenderer:
         arrays = {name: entry.arrays for name, entry in baked.items()}
         values = world_values(state, arrays) | camera_uniforms(state.camera, *size)
         values |= air_frame(values["camera_origin"], state.planet.radius, values["sun_direction"])
+        values |= {"camera_excess": excess(values["camera_origin"], state.planet.radius)}
         values |= {"picture_size": size, "pixel_offset": offset, "pixel_angle": _pixel_angle(state, size)}
         textures = self._textures(state, baked, arrays)
         for slot, technique in state.techniques().items():
             values |= uniforms(technique, slot) | technique.constants(state, arrays)
-        key = (state.camera, size, offset, state.planet, baked["land"].key)
+        variant = variant_of(state, values)
+        textures |= self._traced(state, baked, (size, offset), variant, values, textures)
+        textures |= self._air_tables(state, baked, variant, values, textures)
+        return shade_source(state, variant), textures, values
 
-        def draw(layers: Layers) -> None:
+    def _traced(
+        self,
+        state: CloudsState,
+        baked: Baked,
+        sample: tuple[tuple[int, int], tuple[float, float]],
+        variant: Variant,
+        values: dict[str, Any],
+        textures: dict[str, AnyTexture],
+    ) -> dict[str, AnyTexture]:
+        """The ground and the layer as one sample's rays meet them: the same for every sun."""
+        ground_key = (state.camera, sample, state.planet, baked["land"].key)
+
+        def draw_ground(layers: Layers) -> None:
             layers.use()
-            run_fullscreen(self._gl, trace_source(), textures, values)
+            run_fullscreen(self._gl, ground_source(variant), textures, values)
 
-        textures["traced"], textures["traced_albedo"] = self._traces.get(key, size, draw)
-        textures |= self._air_tables(state, baked, values, textures)
-        return shade_source(state), textures, values
+        found = dict(zip(GROUND_LAYERS, self._grounds.get(ground_key, sample[0], draw_ground), strict=True))
+        moment = state.time if moves(state) or state.layer.wind > 0 else 0.0
+        layer_key = (ground_key, state.layer, state.clouds, moment, baked["fields"].key, state.geometry)
+
+        def draw_layer(layers: Layers) -> None:
+            layers.use()
+            run_fullscreen(self._gl, layer_source(state, variant), {**textures, **found}, values)
+
+        return found | dict(zip(LAYER_LAYERS, self._stretches.get(layer_key, sample[0], draw_layer), strict=True))
 
     def _air_tables(
-        self, state: CloudsState, baked: Baked, values: dict[str, Any], textures: dict[str, AnyTexture]
+        self,
+        state: CloudsState,
+        baked: Baked,
+        variant: Variant,
+        values: dict[str, Any],
+        textures: dict[str, AnyTexture],
     ) -> dict[str, AnyTexture]:
         """The air as this camera's place and this sun show it."""
+        if not variant.table:
+            return {}
         place = (tuple(values["camera_origin"]), state.planet.radius, baked["air"].key)
         made: dict[str, AnyTexture] = {}
         for name, width, key in (
@@ -92,7 +146,7 @@ class CloudsRenderer:
 
             def draw(layers: Layers, name: str = name) -> None:
                 layers.use()
-                run_fullscreen(self._gl, air_source(name == "air_light"), textures, values)
+                run_fullscreen(self._gl, air_source(variant, name == "air_light"), textures, values)
 
             made[name] = self._airs.get((name, key), (width, AIR_ROWS), draw)[0]
             made[name].filter = moderngl.LINEAR, moderngl.LINEAR
@@ -106,7 +160,8 @@ class CloudsRenderer:
         """Free every texture."""
         self._baked.release()
         self._moment.release()
-        self._traces.release()
+        self._grounds.release()
+        self._stretches.release()
         self._airs.release()
 
     def _textures(self, state: CloudsState, baked: Baked, arrays: Mapping[str, Arrays]) -> dict[str, AnyTexture]:
@@ -125,12 +180,14 @@ class CloudsRenderer:
         for slot, technique in state.techniques().items():
             held |= self._baked.get(
                 (slot, technique, keys),
-                lambda s=slot, t=technique: technique_textures(self._gl, s, t.kept_textures(state, arrays)),  # type: ignore[misc]
+                lambda s=slot, t=technique: technique_textures(self._gl, s, t.kept_textures(state, arrays)),  # type:
+                ignore[misc]
             )
             if technique.frame_key(state):
                 held |= self._moment.get(
                     (slot, technique.frame_key(state), keys),
-                    lambda s=slot, t=technique: technique_textures(self._gl, s, t.frame_textures(state, arrays)),  # type: ignore[misc]
+                    lambda s=slot, t=technique: technique_textures(self._gl, s, t.frame_textures(state, arrays)),  #
+                    type: ignore[misc]
                 )
         return held  # type: ignore[return-value]
 
@@ -143,6 +200,7 @@ def world_values(state: CloudsState, baked: Mapping[str, Arrays]) -> dict[str, A
         **globe_axes(state.planet.latitude, state.planet.longitude),
         "air_haze": state.air.haze,
         "land_cell": LAND_CELL,
+        "land_reach": LAND_CELL * LAND_NODES / COARSE_CELLS,
         "land_top": float(baked["land"]["top"]),
         "land_steepness": float(baked["land"]["steepness"]),
         "layer_highest": highest(state.clouds, baked["fields"]),
@@ -170,6 +228,29 @@ def air_frame(eye: Any, radius: float, sun: Any) -> dict[str, Any]:
         "air_horizon": math.pi - math.asin(radius / distance),
         "air_limb": math.pi - math.asin((radius + AIR_TOP) / distance) if above else 0.0,
     }
+
+
+def variant_of(state: CloudsState, values: Mapping[str, Any]) -> Variant:
+    """What of the picture's case is compiled in."""
+    eye = np.asarray(values["camera_origin"], np.float64) + (0.0, 0.0, state.planet.radius)
+    altitude = float(np.linalg.norm(eye)) - state.planet.radius
+    table = state.camera.kind != "orthographic"
+    top = state.layer.base + state.layer.thickness * float(values["layer_highest"])
+    high = float(np.asarray(values["sun_direction"]) @ eye) / float(np.linalg.norm(eye)) > math.sin(LOW_SUN)
+    return Variant(
+        sky=state.view.background == "sky",
+        table=table,
+        side=(-1 if altitude < state.layer.base else int(altitude > top)) if table else 0,
+        twilight=not (table and high and altitude < AIR_TOP / 2),
+    )
+
+
+def excess(eye: Any, radius: float) -> tuple[float, float]:
+    """|q|^2 - R^2 of an eye [m] from the planet's centre, as a pair of floats whose sum it is, m2."""
+    x, y, z = (float(np.float32(c)) for c in eye)
+    whole = x * x + y * y + z * z + 2.0 * float(np.float32(radius)) * z
+    high = float(np.float32(whole))
+    return high, whole - high
 
 
 def globe_axes(latitude: float, longitude: float) -> dict[str, tuple[float, float, float]]:

@@ -42,6 +42,7 @@ def world_textures(gl: GL, baked: Mapping[str, Arrays]) -> dict[str, AnyTexture]
         "air_glow": gl.texture2d(baked["air"]["glow"]),
         "air_skylight": gl.texture2d(skylight(baked["sky"])),
         "globe_albedo": mipmapped(gl, baked["globe"]["albedo"], True),
+        "land_tops": gl.texture2d(baked["land"]["tops"], "nearest"),
         "land_heights": gl.texture2d(baked["land"]["height"]),
         "cloud_systems": mipmapped(gl, baked["fields"]["systems"], True),
     }

@@ -8,7 +8,7 @@
 //   air_passed  one column a slice: its optical depth
 // It does not claim to serve rays that do not start at the camera: a parallel view walks each of its rays.
 
-const float AIR_AROUND = 32.0, AIR_ROWS = 64.0;
+const float AIR_AROUND = 24.0, AIR_ROWS = 64.0;
 
 // Direction and half (0 above the horizon, 1 below) of a row and a column, both counted in texels from 0.
 vec3 air_direction(float row, float column, out bool below) {

@@ -1,85 +1,80 @@
-// One ray of the picture: air, clouds, air, clouds, air, and ground or space, from the eye on.
+// One ray of the picture: air, clouds, air, and ground or space, from the eye on.
 //
-// Belcour 2009, chapters 4 to 6; formulas a8.
+// Belcour 2009, chapters 4 to 6; formulas a8. A ray from above that passes under the layer and leaves it again behind the
+// horizon meets it twice: what it sends the second time stands behind all air.
 
+// Air before and behind a cut of the ray: light (W m-2 sr-1) as each part's own beginning sees it, and what they let through.
 struct Airs {
-    vec3 light[3]; // of the three stretches of air, each as its own beginning sees it
-    vec3 kept[3];
+    vec3 light;
+    vec3 kept;
+    vec3 light_behind;
+    vec3 kept_behind;
 };
 
-// The air of a ray, cut at two distances.
-Airs airs_along(Path path, vec3 origin, vec3 direction, bool ground, float stop, vec2 cuts) {
+// stop: where the ground ends the ray, m.
+Airs airs_along(Path path, vec3 origin, vec3 direction, float stop, float cut) {
+    vec3 depth, depth_behind;
     Airs airs;
 #if AIR_TABLE == 1
     // The table's ray ends at the sphere or at the air's top; the land's hills end it before.
     float sphere = sphere_distance(path);
     AirView view = air_view(direction, sphere < NEVER);
     AirRay ray = air_ray(path, sphere);
-    vec3 depths[3];
-    vec3 lights[3];
-    lights[0] = air_to(view, air_share(ray, cuts.x), depths[0]);
-    lights[1] = air_to(view, air_share(ray, cuts.y), depths[1]);
-    lights[2] = air_to(view, air_share(ray, min(stop, ray.end)), depths[2]);
-    airs.light[0] = lights[0];
-    airs.kept[0] = exp(-depths[0]);
-    airs.light[1] = max(lights[1] - lights[0], vec3(0.0)) * exp(depths[0]);
-    airs.kept[1] = exp(depths[0] - depths[1]);
-    airs.light[2] = max(lights[2] - lights[1], vec3(0.0)) * exp(depths[1]);
-    airs.kept[2] = exp(depths[1] - depths[2]);
+    vec3 near = air_to(view, air_share(ray, cut), depth), all = air_to(view, air_share(ray, stop), depth_behind);
+    airs.light = near;
+    airs.kept = exp(-depth);
+    airs.light_behind = max(all - near, vec3(0.0)) * exp(depth);
+    airs.kept_behind = exp(depth - depth_behind);
 #else
     AirRay ray = air_ray(path, stop);
-    vec4 shares = vec4(0.0, air_share(ray, cuts.x), air_share(ray, cuts.y), 1.0);
-    for (int n = 0; n < 3; n++) {
-        vec3 depth;
-        airs.light[n] = air_between(path, ray, origin, direction, vec2(shares[n], shares[n + 1]), AIR_STEPS, depth);
-        airs.kept[n] = exp(-min(depth, AIR_DARKEST));
-    }
+    float share = air_share(ray, cut);
+    airs.light = air_between(path, ray, origin, direction, vec2(0.0, share), AIR_STEPS, depth);
+    airs.kept = exp(-min(depth, AIR_DARKEST));
+    airs.light_behind = air_between(path, ray, origin, direction, vec2(share, 1.0), AIR_STEPS, depth_behind);
+    airs.kept_behind = exp(-min(depth_behind, AIR_DARKEST));
 #endif
     return airs;
 }
 
-// traced: distance to the ground (m), below 0 where there is none, and its normal. albedo: of it.
-vec4 radiance_along(vec3 origin, vec3 direction, vec4 traced, vec3 albedo, float footprint) {
-    Path path = path_of(origin, direction);
-    bool ground = traced.x >= 0.0;
-    float stop = ground ? traced.x : NEVER;
-    vec4 legs = layer_legs(path, layer_base, layer_base + max(layer_thickness * layer_highest, 1.0), stop);
-    // Nearly every ray has one stretch, and what only few have is skipped where none of its neighbours has it either.
-    Stretch first = Stretch(vec3(0.0), vec3(1.0)), second = first;
-    int leg = legs.y > 0.0 ? 0 : 1;
-    do {
-        vec2 nominal = leg == 0 ? legs.xy : legs.zw;
-        Stretch found = cloud_stretch(path, origin, direction, leg, nominal, stop, footprint);
-        if (leg == 0) first = found; else second = found;
-        leg++;
-    } while (leg == 1 && legs.w > 0.0);
-    // A stretch stands at its middle; one that is not there, where the ray begins or ends.
-    vec2 cuts = vec2(legs.y > 0.0 ? legs.x + 0.5 * legs.y : 0.0, legs.w > 0.0 ? legs.z + 0.5 * legs.w : stop);
-    Airs airs = airs_along(path, origin, direction, ground, stop, cuts);
-    // Between the two stretches the ray is under the layer, whose shade it takes from one place.
-    float under = 0.5 * (cuts.x + min(cuts.y, cuts.x + 6.0e4));
-    float low = path_altitude(path, under);
-    vec3 beneath = origin + under * direction;
-    airs.light[1] *= air_lit(beneath, low, dot(up_at(beneath), sun_direction));
-    vec3 behind = vec3(0.0);
-    if (ground) {
-        behind = ground_light(origin + traced.x * direction, path_altitude(path, traced.x), traced.yzw, albedo);
-    } else {
+// Radiance of sun or ground behind everything else.
+vec3 light_behind(vec3 origin, vec3 direction, Path path, vec4 ground, vec3 albedo, float overhead) {
+    vec3 light = ground_light(origin + ground.x * direction, path_altitude(path, ground.x), ground.yzw, albedo, overhead);
 #if BACKGROUND_SKY == 1
-        float chord = 2.0 * sin(0.5 * SUN_RADIUS);
-        behind = length(direction - sun_direction) < chord ? sun_irradiance / (AIR_PI * SUN_RADIUS * SUN_RADIUS) : vec3(0.0);
+    float chord = 2.0 * sin(0.5 * SUN_RADIUS);
+    vec3 disc = length(direction - sun_direction) < chord ? sun_irradiance / (AIR_PI * SUN_RADIUS * SUN_RADIUS) : vec3(0.0);
+#else
+    vec3 disc = vec3(0.0);
 #endif
-    }
-    vec3 kept = airs.kept[0] * first.kept;
-    vec3 light = airs.light[0] + airs.kept[0] * first.light;
-    light += kept * (airs.light[1] + airs.kept[1] * second.light);
-    kept *= airs.kept[1] * second.kept;
-    light += kept * airs.light[2];
-    kept *= airs.kept[2];
-    light += kept * behind;
+    return ground.x >= 0.0 ? light : disc;
+}
+
+// ground: distance (m), below 0 where there is none, and normal. overhead: thickness of the layer above it, m.
+vec4 radiance_along(vec3 origin, vec3 direction, Path path, vec4 ground, vec3 albedo, float overhead, Stretch first, Stretch second) {
+    float stop = ground.x >= 0.0 ? ground.x : NEVER;
+    float cut = first.t > 0.0 ? first.t : CAMERA_SIDE < 0 ? stop : 0.0;
+    Airs airs = airs_along(path, origin, direction, stop, cut);
+    // The part of the air that lies under the layer takes its shade from one place.
+    float under = CAMERA_SIDE < 0 ? min(0.5 * cut, 3.0e4) : cut + 0.5 * min(stop - cut, 6.0e4);
+    float lit = air_lit(origin + under * direction, path_altitude(path, under), dot(up_at(origin + under * direction), sun_direction));
+#if CAMERA_SIDE < 0
+    airs.light *= lit;
+#else
+    airs.light_behind *= lit;
+#endif
+    vec3 behind = light_behind(origin, direction, path, ground, albedo, overhead);
+    Lit near = stretch_light(first, origin, direction);
+#if CAMERA_SIDE >= 0
+    Lit far = stretch_light_far(second, origin, direction);
+    behind = far.light + far.kept * behind;
+#else
+    Lit far = Lit(vec3(0.0), vec3(1.0));
+#endif
+    vec3 kept = airs.kept * near.kept;
+    vec3 light = airs.light + airs.kept * near.light + kept * (airs.light_behind + airs.kept_behind * behind);
 #if BACKGROUND_SKY == 1
     return vec4(light, 1.0);
 #else
-    return vec4(light, ground ? 1.0 : 1.0 - dot(kept, vec3(0.2126, 0.7152, 0.0722)));
+    kept *= airs.kept_behind * far.kept;
+    return vec4(light, ground.x >= 0.0 ? 1.0 : 1.0 - dot(kept, vec3(0.2126, 0.7152, 0.0722)));
 #endif
 }

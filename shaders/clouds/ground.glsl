@@ -2,7 +2,9 @@
 //
 // What a ray finds of it is traced once for all suns. It does not know caves, overhangs or water that mirrors.
 // land_heights  m above the sphere, nodes land_cell apart round the site    globe_albedo  root of the Earth's albedo, by
-// longitude and latitude    land_horizon  elevation (rad) above which each node of the land sees the sun's azimuth
+// longitude and latitude    land_tops  highest land within land_reach (m) of each coarse cell
+//   land_horizon  sine of the elevation above which each node of
+// the land sees the sun
 
 vec2 land_place(vec2 place) {
     float size = float(textureSize(land_heights, 0).x);
@@ -25,17 +27,22 @@ float ground_distance(Path path, vec3 origin, vec3 direction, float footprint) {
     float t = max(max(roof.x, 0.0), max(from_sides.x, from_sides.y));
     float stop = min(min(end, roof.y), min(to_sides.x, to_sides.y));
     float found = NEVER, before = t, gap_before = 1.0;
+    float run = max(length(direction.xy), 1.0e-3);
     for (int k = 0; k < LAND_STEPS; k++) {
         if (t >= stop || found < NEVER) break;
         vec3 point = origin + t * direction;
-        float gap = path_altitude(path, t) - land_height(place_of(point));
+        vec2 place = place_of(point);
+        float altitude = path_altitude(path, t), gap = altitude - land_height(place);
         if (gap <= 0.0) {
             found = k == 0 ? t : mix(before, t, gap_before / max(gap_before - gap, 1.0e-6));
         } else {
             before = t;
             gap_before = gap;
-            float descent = -(path.along + t) / (planet_radius + path_altitude(path, t)); // fall per metre of the ray
-            t += max(gap / max(land_steepness + descent, 0.02), max(footprint * t, 0.2 * land_cell));
+            float descent = max(-(path.along + t) / (planet_radius + altitude), 0.0); // fall per metre of the ray
+            // Nothing of the land within a coarse cell's side is higher than its texel of land_tops.
+            float roof = textureLod(land_tops, land_place(place), 0.0).r;
+            float clear = altitude > roof ? min(land_reach / run, (altitude - roof) / max(descent, 1.0e-3)) : 0.0;
+            t += max(max(gap / max(land_steepness * run + descent, 0.02), clear), max(footprint * t, 0.2 * land_cell));
         }
     }
     return min(found, end);
@@ -62,9 +69,9 @@ vec3 ground_albedo(vec3 point, vec3 up, vec2 place, float altitude, float footpr
 
 // Share of the sun's disc that the land leaves to its nodes; mu: the sun's zenith cosine.
 float land_sees_sun(vec2 place, float mu) {
-    float elevation = asin(clamp(mu, -1.0, 1.0));
     float horizon = textureLod(land_horizon, land_place(place), 0.0).r;
     vec2 inside = step(abs(land_place(place) - 0.5), vec2(0.5));
-    float t = clamp((elevation - horizon) / (2.0 * SUN_RADIUS) + 0.5, 0.0, 1.0);
+    // Near the horizon, where it matters, a sine is its angle.
+    float t = clamp((mu - horizon) / (2.0 * SUN_RADIUS * sqrt(max(1.0 - mu * mu, 1.0e-4))) + 0.5, 0.0, 1.0);
     return mix(1.0, t * t * (3.0 - 2.0 * t), inside.x * inside.y);
 }

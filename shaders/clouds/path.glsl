@@ -47,16 +47,24 @@ vec2 dot_pair(vec3 a, vec3 b, float c, float d) {
     return two_sum(sum.x, sum.y);
 }
 
-// origin: m. direction: unit vector, as exactly as float32 holds one.
-Path path_of(vec3 origin, vec3 direction) {
+// |q|^2 - R^2 of an origin, as a pair, m2.
+vec2 excess_of(vec3 origin) {
+    return dot_pair(origin, origin, 2.0 * planet_radius, origin.z);
+}
+
+// origin: m. c: its excess. direction: unit vector, as exactly as float32 holds one.
+Path path_from(vec3 origin, vec2 c, vec3 direction) {
     vec2 b = dot_pair(origin, direction, planet_radius, direction.z);
-    vec2 c = dot_pair(origin, origin, 2.0 * planet_radius, origin.z);
     vec2 longer = dot_pair(direction, direction, 1.0, -1.0); // how much its square is off one
     vec2 bb = two_product(b.x, b.x);
     vec2 d = two_sum(bb.x, -c.x);
     float rest = bb.y + 2.0 * b.x * b.y - c.y - bb.x * (longer.x + longer.y);
     float radius = length(origin + vec3(0.0, 0.0, planet_radius));
     return Path(b.x, c.x, d.x + (d.y + rest), c.x / (radius + planet_radius));
+}
+
+Path path_of(vec3 origin, vec3 direction) {
+    return path_from(origin, excess_of(origin), direction);
 }
 
 float path_altitude(Path path, float t) {

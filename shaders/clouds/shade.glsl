@@ -5,10 +5,15 @@ struct Shade {
     vec3 sky;     // share of the sky's light
 };
 
-// For the cover over or before a point; mu: apparent cosine of the sun in the layer.
-Shade shade_under(Cover cover, float mu) {
-    float depth = layer_extinction * cover.thickness;
-    vec3 direct = scattering_direct(depth, mu);
-    vec3 all = mix(vec3(1.0), scattering_transmittance(depth, mu), step(1.0e-3, depth));
-    return Shade(direct, max(all - direct, vec3(0.0)), 1.0 - scattering_diffuse_reflectance(depth));
+// Apparent cosine in a layer so thick of a sun with zenith cosine mu at its base.
+float shade_slant(float mu, float thickness) {
+    return clamp(thickness / geometry_slant(max(mu, 0.0), layer_base, thickness), 1.0e-3, 1.0);
+}
+
+// Scattered light comes from the layer overhead, the beam from where the sun's ray crosses it; thicknesses in m, mu apparent.
+Shade shade_under(float overhead, float crossed, float mu) {
+    float above = layer_extinction * overhead, before = layer_extinction * crossed;
+    vec3 all = above > 1.0e-3 ? scattering_transmittance(above, mu) : vec3(1.0);
+    vec3 sky = above > 1.0e-3 ? 1.0 - scattering_diffuse_reflectance(above) : vec3(1.0);
+    return Shade(scattering_direct(before, mu), max(all - scattering_direct(above, mu), vec3(0.0)), sky);
 }

@@ -3,19 +3,12 @@
 // Symbols: rise, height of the layer's middle over the point (m); x = -r mu + sqrt((r mu)^2 + rise (2 r + rise)) the way to it
 // on the sphere (formulas a8), r = planet_radius + altitude. Light that the layer scatters arrives from overhead.
 
-Shade cloud_shadow(vec3 point, float altitude, float mu) {
+Shade cloud_shadow(vec3 point, float altitude, float mu, float overhead) {
     float r = planet_radius + altitude;
     float rise = max(layer_base + 0.5 * layer_thickness - altitude, 0.0);
     float square = rise * (2.0 * r + rise), level = r * max(mu, 0.0);
     float way = square / max(level + sqrt(level * level + square), 1.0);
     vec3 met = point + way * sun_direction;
-    Cover cover = cover_at(place_of(met), 1.0);
-    float thickness = max(cover.thickness, 1.0e-3);
-    float at_base = max(dot(up_at(met), sun_direction), 0.0);
-    float apparent = clamp(thickness / geometry_slant(at_base, layer_base, thickness), 1.0e-3, 1.0);
-    Shade found = shade_under(cover, apparent);
-    Shade overhead = shade_under(cover_at(place_of(point), layer_base), apparent);
-    found.diffuse = overhead.diffuse;
-    found.sky = overhead.sky;
-    return found;
+    float crossed = cover_at(place_of(met), 1.0).thickness;
+    return shade_under(overhead, crossed, shade_slant(dot(up_at(met), sun_direction), max(crossed, 1.0e-3)));
 }

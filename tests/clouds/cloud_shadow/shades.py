@@ -61,7 +61,7 @@ def shade(
     point = "vec3(x, 0.0, 0.0)"
     return ask(
         {"phase": HenyeyGreenstein(), "geometry": Flat(), "scattering": AddingDoubling(), "cloud_shadow": technique},
-        f"cloud_shadow({point}, 0.0, sun_direction.z).{part}",
+        f"cloud_shadow({point}, 0.0, sun_direction.z, cover_at(vec2(x, 0.0), 1.0).thickness).{part}",
         {"x": east},
         3,
         files=FILES,
