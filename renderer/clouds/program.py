@@ -39,7 +39,7 @@ uniform sampler2D air_light;      // of the camera's place, W m-2 sr-1
 uniform sampler2D air_passed;     // optical depths of the same
 uniform sampler2D traced_ground;   // distance to the ground, m, and its normal
 uniform sampler2D traced_albedo;
-uniform sampler2D traced_first;    // stretches inside the layer: middle, m, optical depth, thickness, m, apparent cosine
+uniform sampler2D traced_first;    // stretches in the layer: middle, m, optical depth, thickness, m, apparent cosine
 uniform sampler2D traced_second;
 uniform sampler2D traced_slopes;   // of their upper sides
 uniform sampler2D traced_overhead; // thickness over the ground, m
@@ -124,9 +124,11 @@ void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     vec4 ground = texelFetch(traced_ground, pixel, 0), slopes = texelFetch(traced_slopes, pixel, 0);
     vec4 near = texelFetch(traced_first, pixel, 0), far = texelFetch(traced_second, pixel, 0);
-    radiance = radiance_along(origin, direction, path, ground, texelFetch(traced_albedo, pixel, 0).rgb,
-                              texelFetch(traced_overhead, pixel, 0).r, Stretch(near.x, near.y, near.z, near.w, slopes.xy),
-                              Stretch(far.x, far.y, far.z, far.w, slopes.zw));
+    vec3 albedo = texelFetch(traced_albedo, pixel, 0).rgb;
+    float overhead = texelFetch(traced_overhead, pixel, 0).r;
+    Stretch first = Stretch(near.x, near.y, near.z, near.w, slopes.xy);
+    Stretch second = Stretch(far.x, far.y, far.z, far.w, slopes.zw);
+    radiance = radiance_along(origin, direction, path, ground, albedo, overhead, first, second);
 }"""
 
 WORLD_FILES = ("lib/pixel.glsl", "lib/camera.glsl", "clouds/path.glsl", "clouds/layer.glsl", "clouds/air.glsl")

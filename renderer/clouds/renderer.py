@@ -107,7 +107,7 @@ class CloudsRenderer:
         sample: tuple[tuple[int, int], tuple[float, float]],
         variant: Variant,
         values: dict[str, Any],
-        textures: dict[str, AnyTexture],
+        textures: Mapping[str, AnyTexture],
     ) -> dict[str, AnyTexture]:
         """The ground and the layer as one sample's rays meet them: the same for every sun."""
         ground_key = (state.camera, sample, state.planet, baked["land"].key)
@@ -116,7 +116,9 @@ class CloudsRenderer:
             layers.use()
             run_fullscreen(self._gl, ground_source(variant), textures, values)
 
-        found = dict(zip(GROUND_LAYERS, self._grounds.get(ground_key, sample[0], draw_ground), strict=True))
+        found: dict[str, AnyTexture] = dict(
+            zip(GROUND_LAYERS, self._grounds.get(ground_key, sample[0], draw_ground), strict=True)
+        )
         moment = state.time if moves(state) or state.layer.wind > 0 else 0.0
         layer_key = (ground_key, state.layer, state.clouds, moment, baked["fields"].key, state.geometry)
 
@@ -124,7 +126,8 @@ class CloudsRenderer:
             layers.use()
             run_fullscreen(self._gl, layer_source(state, variant), {**textures, **found}, values)
 
-        return found | dict(zip(LAYER_LAYERS, self._stretches.get(layer_key, sample[0], draw_layer), strict=True))
+        found |= zip(LAYER_LAYERS, self._stretches.get(layer_key, sample[0], draw_layer), strict=True)
+        return found
 
     def _air_tables(
         self,
@@ -132,7 +135,7 @@ class CloudsRenderer:
         baked: Baked,
         variant: Variant,
         values: dict[str, Any],
-        textures: dict[str, AnyTexture],
+        textures: Mapping[str, AnyTexture],
     ) -> dict[str, AnyTexture]:
         """The air as this camera's place and this sun show it."""
         if not variant.table:
@@ -178,17 +181,16 @@ class CloudsRenderer:
         )
         keys = tuple(sorted(entry.key for entry in baked.values()))
         for slot, technique in state.techniques().items():
-            held |= self._baked.get(
-                (slot, technique, keys),
-                lambda s=slot, t=technique: technique_textures(self._gl, s, t.kept_textures(state, arrays)),  # type:
-                ignore[misc]
-            )
+
+            def kept(slot: str = slot, technique: Any = technique) -> dict[str, AnyTexture]:
+                return technique_textures(self._gl, slot, technique.kept_textures(state, arrays))
+
+            def framed(slot: str = slot, technique: Any = technique) -> dict[str, AnyTexture]:
+                return technique_textures(self._gl, slot, technique.frame_textures(state, arrays))
+
+            held |= self._baked.get((slot, technique, keys), kept)
             if technique.frame_key(state):
-                held |= self._moment.get(
-                    (slot, technique.frame_key(state), keys),
-                    lambda s=slot, t=technique: technique_textures(self._gl, s, t.frame_textures(state, arrays)),  #
-                    type: ignore[misc]
-                )
+                held |= self._moment.get((slot, technique.frame_key(state), keys), framed)
         return held  # type: ignore[return-value]
 
 

@@ -34,6 +34,6 @@ def test_it_does_not_move_with_the_sun(ask: Ask) -> None:
 
 
 def test_twice_the_depth_is_found(ask: Ask, spoil: Callable) -> None:
-    with spoil("clouds/shade.glsl", "layer_extinction * cover.thickness", "2.0 * layer_extinction * cover.thickness"):
+    with spoil("clouds/shade.glsl", "before = layer_extinction * crossed", "before = 2.0 * layer_extinction * crossed"):
         found = shade(ask, Overhead(), EAST, 40.0, "direct")
     assert abs(found[1] / np.exp(-DEPTH / np.sin(np.radians(40.0))) - 1) > 0.5
