@@ -31,55 +31,44 @@ FOOT_REACH = 8.0
 
 
 @njit(cache=True, nogil=True)
-def _sweep(heights, cell, azimuth, tangent, density, choice, result):
+def _sweep(grid, major, minor, fall, density, choice, result):
     """Height of the shadow's upper side, walking away from the sun along lines of its azimuth.
 
-    Lines run along the azimuth, some for each row or column they start from, and carry the highest ray so far down with
-    them; a node takes what the two lines beside it have. Nothing is interpolated twice.
+    Lines run along the azimuth, some for each column they start from, and carry the highest ray so far down with them;
+    a node takes what the two lines beside it have. Nothing is interpolated twice.
 
     Args:
-        heights: (N, M) [m], row 0 the northern edge. cell: side of a cell [m]. azimuth: of the sun [rad].
-        tangent: of its elevation. density: lines a cell. choice: LOWEST, MEAN or HIGHEST. result: (N, M) float32.
+        grid: (N, M) [m], float32. major, minor: of the unit vector to the sun, along the rows' axis and the columns'.
+        fall: of a ray from row to row [m]. density: lines a cell. choice: LOWEST, MEAN or HIGHEST.
+        result: (N, M) float32.
 
     Source: Dozier, Bruno & Downey 1981 (lines along the azimuth); one elevation needs no hull, only the highest ray.
     """
-    east, south = math.sin(azimuth), -math.cos(azimuth)
-    along_rows = abs(south) >= abs(east)
-    grid = heights if along_rows else heights.T
-    out = result if along_rows else result.T
-    major, minor = (south, east) if along_rows else (east, south)
     length, width = grid.shape
     drift = -minor / abs(major)
-    fall = cell / abs(major) * tangent
     extent = math.ceil(abs(drift) * (length - 1)) + 1
-    high = np.full((width + 2 * extent) * density, -1e9)
+    high = np.full((width + 2 * extent) * density, np.float32(-1e9))
+    through = np.full_like(high, np.float32(-1e9))
+    fall, floor, each = np.float32(fall), np.float32(FLOOR), np.float32(1.0 / density)
     for walked in range(length):
         row = length - 1 - walked if major > 0 else walked
         start = (extent - drift * walked) * density  # the line, broken, that passes node 0 of this row
-        before = -1e9
         first, last = max(math.floor(start), 0), min(math.ceil(start + (width - 1) * density), len(high) - 1)
-        for line in range(first, last + 1):
-            place = min(max((line - start) / density, 0.0), width - 1.0)
-            low = min(int(place), width - 2)
-            here = grid[row, low] + (place - low) * (grid[row, low + 1] - grid[row, low])
+        heights, out, begin = grid[row], result[row], np.float32(start - first)
+        lines, passing = high[first : last + 1], through[first : last + 1]
+        for line in range(last + 1 - first):
+            place = min(max((np.float32(line) - begin) * each, np.float32(0.0)), np.float32(width - 1))
+            low = min(np.int32(place), np.int32(width - 2))
+            here = heights[low] + (place - np.float32(low)) * (heights[low + 1] - heights[low])
             # Without the node itself, for this falls evenly to where it meets the ground between two nodes.
-            passing = max(high[line] - fall, here - FLOOR)
-            high[line] = max(passing, here)
-            if line > first:
-                _give(out[row], before, passing, line - 1, start, density, choice)
-            before = passing
-
-
-@njit(cache=True, nogil=True, inline="always")
-def _give(out, before, passing, line, start, density, choice):
-    """The nodes of a row between a line and the next one take what both have."""
-    node = math.ceil((line - start) / density - 1e-9)
-    while node < len(out) and node * density + start <= line + 1:
-        if node >= 0:
-            share = node * density + start - line
-            mean = before + share * (passing - before)
-            out[node] = mean if choice == MEAN else max(before, passing) if choice == HIGHEST else min(before, passing)
-        node += 1
+            passing[line] = max(lines[line] - fall, here - floor)
+            lines[line] = max(passing[line], here)
+        near = np.int32(min(int(begin), last - first - 1))
+        share = begin - np.float32(near)
+        for node in range(width):
+            one, other = passing[node * density + near], passing[min(node * density + near + 1, last - first)]
+            mean = one + share * (other - one)
+            out[node] = mean if choice == MEAN else max(one, other) if choice == HIGHEST else min(one, other)
 
 
 def shadow_height(heights: np.ndarray, cell: float, azimuth: float, elevation: float, choice: int = MEAN) -> np.ndarray:
@@ -95,11 +84,15 @@ def shadow_height(heights: np.ndarray, cell: float, azimuth: float, elevation: f
     """
     if elevation <= 0:
         return np.full(heights.shape, NIGHT, np.float32)
-    result = np.empty(heights.shape, np.float32)
     density = LINES if choice == MEAN else 1
     tangent = math.tan(min(elevation, 1.57))
-    _sweep(np.asarray(heights, np.float64), cell, azimuth, tangent, density, choice, result)
-    return result
+    east, south = math.sin(azimuth), -math.cos(azimuth)
+    along_rows = abs(south) >= abs(east)
+    major, minor = (south, east) if along_rows else (east, south)
+    grid = np.ascontiguousarray(heights if along_rows else heights.T, np.float32)
+    result = np.empty_like(grid)
+    _sweep(grid, major, minor, cell / abs(major) * tangent, density, choice, result)
+    return result if along_rows else np.ascontiguousarray(result.T)
 
 
 def land_shadow(terrain: Arrays, sun: tuple[float, float]) -> np.ndarray:
