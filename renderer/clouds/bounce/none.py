@@ -2,18 +2,28 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import ClassVar, Literal
 
-from renderer.clouds.technique import CloudsTechnique
+from renderer.clouds.radiosity.maps import Bounced, BounceMaps
+from renderer.clouds.radiosity.technique import BasisTechnique, BounceTechnique, Solved
+from renderer.core.technique import Arrays
 
 
-class NoBounce(CloudsTechnique):
-    """The clouds' base sees a black ground, and the ground nothing that comes back."""
+class NoBounce(BounceTechnique):
+    """The first light alone."""
 
     title: ClassVar[str] = "None"
-    caption: ClassVar[str] = (
-        "No light goes back and forth: the clouds' base is dark, snow or not. The zero of the bounces."
-    )
-    paper: ClassVar[str] = "-"
+    caption: ClassVar[str] = "No light bounces between ground and clouds."
+    paper: ClassVar[str] = "as Belcour 2009 left it in ProLand, section 6.1.2"
+    textures: ClassVar[Mapping[str, str]] = {}
 
     kind: Literal["none"] = "none"
+
+    def solve(self, maps: BounceMaps, basis: BasisTechnique | None, baked: Mapping[str, Arrays]) -> Solved:
+        """Nothing."""
+        return Solved(maps, Bounced(0 * maps.ground, 0 * maps.ground))
+
+    def pictures(self, solved: Solved) -> dict:
+        """It has none."""
+        return {}

@@ -33,10 +33,12 @@ class Basis:
         labels: number of the part that each cell belongs to, (GRID, GRID), from 0 on without gaps.
         transform: orthonormal rows that turn the parts' means into coefficients, (n, parts); none where each part has
             a coefficient of its own, whose value is its mean.
+        kept: of wavelets, their rows in `haar_matrix`.
     """
 
     labels: np.ndarray
     transform: np.ndarray | None = None
+    kept: np.ndarray | None = None
 
     @property
     def parts(self) -> int:
@@ -142,11 +144,14 @@ def haar_matrix(count: int = HAAR_CELLS) -> np.ndarray:
 
 def haar_basis(kept: np.ndarray) -> Basis:
     """Some of Haar's wavelets, by their rows in `haar_matrix`."""
-    return Basis(blocks(HAAR_CELLS, HAAR_CELLS), haar_matrix()[np.sort(kept)])
+    rows = np.sort(kept)
+    return Basis(blocks(HAAR_CELLS, HAAR_CELLS), haar_matrix()[rows], rows)
 
 
 def largest_wavelets(fields: np.ndarray, coefficients: int, importance: np.ndarray | None = None) -> np.ndarray:
-    """The wavelets that some fields need most: those of the largest coefficients, the mean always.
+    """The wavelets that some fields need most: those of the largest coefficients.
+
+    The coarsest are always kept, a quarter of all: the light of another hour may need them.
 
     Args:
         fields: (K, GRID, GRID), each of which counts alike.
@@ -159,8 +164,10 @@ def largest_wavelets(fields: np.ndarray, coefficients: int, importance: np.ndarr
     energy = np.sum((means / np.where(norm > 0, norm, 1) @ matrix.T) ** 2, axis=0)
     if importance is not None:
         energy = energy * (matrix**2 @ cells.means(importance))
-    energy[0] = np.inf
-    # The coarse one first among equals, so that the same fields give the same wavelets.
+    coarse = 4 ** int(np.log2(max(coefficients / 4, 1)) / 2)
+    energy[:coarse] = np.inf
+    # The coarse one first among those that nothing needs.
+    energy[energy < 1e-12] = 0
     return np.argsort(-energy, kind="stable")[:coefficients]
 
 

@@ -30,19 +30,25 @@ class ThreeLevelExchange:
                 raise ValueError(f"{n} cells of {cell} cannot be cut into texels of {LEVELS} times {height}")
             return
         self._size = fft.next_fast_len(n + 2 * self._cells[-1], real=True)
-        kernel = sum(w * _disc_mean(width * height / cell, self._size) for w, width in zip(self.weights, LEVELS))
-        self._spectrum = fft.rfft2(kernel).real.astype(np.float32)
+        kernels = np.stack([_disc_mean(width * height / cell, self._size) for width in LEVELS])
+        self._spectra = fft.rfft2(kernels).real.astype(np.float32)
 
     def __call__(self, radiosity: np.ndarray) -> np.ndarray:
         """Irradiance of the plane opposite, (..., N, N); nothing shines beyond the grid."""
         if self.reading == "discs":
-            shape = (self._size, self._size)
-            return fft.irfft2(fft.rfft2(radiosity, shape) * self._spectrum, shape)[..., : self.n, : self.n]
-        found = np.zeros(np.shape(radiosity), np.result_type(radiosity, np.float32))
-        for weight, width in zip(self.weights, self._cells, strict=True):
-            means = block_means(radiosity, width)
-            found += weight * (spread_texels(means, width) if self.reading == "texels" else taps(means, width))
-        return found
+            return self._convolved(radiosity, np.tensordot(self.weights.astype(np.float32), self._spectra, 1))
+        return sum(weight * mean for weight, mean in zip(self.weights, self.means(radiosity), strict=True))
+
+    def means(self, radiosity: np.ndarray) -> list[np.ndarray]:
+        """Means over the three footprints of every cell, (..., N, N) each; nothing shines beyond the grid."""
+        if self.reading == "discs":
+            return [self._convolved(radiosity, spectrum) for spectrum in self._spectra]
+        read = spread_texels if self.reading == "texels" else taps
+        return [read(block_means(radiosity, width), width) for width in self._cells]
+
+    def _convolved(self, radiosity: np.ndarray, spectrum: np.ndarray) -> np.ndarray:
+        shape = (self._size, self._size)
+        return fft.irfft2(fft.rfft2(radiosity, shape) * spectrum, shape)[..., : self.n, : self.n]
 
     def spread(self, radiosity: np.ndarray) -> np.ndarray:
         """The same where the plane goes on beyond the grid with its mean over it."""

@@ -6,6 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from renderer.clouds.radiosity.bases import CELL, GRID
+
 
 @dataclass(frozen=True)
 class BounceMaps:
@@ -23,6 +25,7 @@ class BounceMaps:
             lets through; W m-2, (N, N, C).
         cloud: irradiance of the base from below before any bounce: the sun under the layer; W m-2, (N, N, C).
         emitted: light that leaves the base downwards and is not in `ground` yet, W m-2, (N, N, C); none where left out.
+        centre: of the square in the plane of the ground, m.
     """
 
     cell: float
@@ -33,6 +36,12 @@ class BounceMaps:
     ground: np.ndarray
     cloud: np.ndarray
     emitted: np.ndarray | None = None
+    centre: tuple[float, float] = (0.0, 0.0)
+
+    @property
+    def half(self) -> float:
+        """Half of the square's side, m."""
+        return self.cell * self.n / 2
 
     @property
     def n(self) -> int:
@@ -57,6 +66,15 @@ class Bounced:
 
     ground: np.ndarray
     cloud: np.ndarray
+
+
+def square_cells(height: float) -> tuple[int, float]:
+    """Cells along a side of the square on which bounces are computed, and a cell's side in metres.
+
+    Args:
+        height: of the cloud base above the ground, m.
+    """
+    return GRID, CELL * height
 
 
 def uniform_gain(albedo: np.ndarray, reflectance: np.ndarray) -> np.ndarray:

@@ -48,10 +48,10 @@ def direct(
     """
     active = np.any(answers.cloud != 0, axis=tuple(range(answers.cloud.ndim - 1)))
     there = transfer.from_cloud @ answers.cloud[..., active] @ transfer.from_ground[active] + transfer.on_ground
-    arriving = _times(transfer.from_cloud, cloud_first) + _times(there, ground_first)
+    arriving = times(transfer.from_cloud, cloud_first) + times(there, ground_first)
     system = np.eye(there.shape[-1], dtype=np.float32) - there @ answers.ground
     ground = np.linalg.solve(system, arriving[..., None])[..., 0]
-    return ground, _times(transfer.from_ground, _times(answers.ground, ground) + ground_first)
+    return ground, times(transfer.from_ground, times(answers.ground, ground) + ground_first)
 
 
 def by_bounces(
@@ -72,11 +72,11 @@ def by_bounces(
     terms: list[tuple[np.ndarray, np.ndarray]] = []
     for _ in range(half_bounces):
         term = (
-            _times(transfer.from_cloud, from_cloud) + _times(transfer.on_ground, from_ground),
-            _times(transfer.from_ground, from_ground),
+            times(transfer.from_cloud, from_cloud) + times(transfer.on_ground, from_ground),
+            times(transfer.from_ground, from_ground),
         )
         ground, cloud = ground + term[0], cloud + term[1]
-        from_ground, from_cloud = _times(answers.ground, term[0]), _times(answers.cloud, term[1])
+        from_ground, from_cloud = times(answers.ground, term[0]), times(answers.cloud, term[1])
         terms = [*terms[-3:], term]
     if tail and len(terms) == 4:
         ground, cloud = (
@@ -107,7 +107,8 @@ def by_gmres(
     return ground, transfer.from_ground @ (answers.ground @ ground + ground_first)
 
 
-def _times(matrix: np.ndarray, vector: np.ndarray) -> np.ndarray:
+def times(matrix: np.ndarray, vector: np.ndarray) -> np.ndarray:
+    """Product of matrices (..., m, n) and vectors (..., n)."""
     return (matrix @ vector[..., None])[..., 0]
 
 

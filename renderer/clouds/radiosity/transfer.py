@@ -119,6 +119,23 @@ def flat_transfer(ground: Basis, cloud: Basis, detail: Detail = PLAIN) -> Transf
     )
 
 
+def closed(transfer: Transfer, ground: Basis, cloud: Basis) -> Transfer:
+    """The same where all goes on beyond the square with its mean over it, so that uniform planes stay uniform."""
+    from_cloud = transfer.from_cloud + _missing(ground, cloud, transfer.from_cloud, transfer.on_ground)
+    from_ground = transfer.from_ground + _missing(cloud, ground, transfer.from_ground, None)
+    return Transfer(from_cloud.astype(np.float32), from_ground.astype(np.float32), transfer.on_ground)
+
+
+def _missing(to: Basis, of: Basis, matrix: np.ndarray, own: np.ndarray | None) -> np.ndarray:
+    """What rows lack of 1, times the mean."""
+    one = np.ones((GRID, GRID))
+    lack = to.analyse(one) - matrix @ of.analyse(one)
+    if own is not None:
+        lack = lack - own @ to.analyse(one)
+    mean = of.sizes / of.sizes.sum()
+    return np.outer(lack, mean if of.transform is None else of.transform @ mean)
+
+
 def _flat_parts(to: _Side, of: _Side, chunk: int = 64) -> np.ndarray:
     """Mean form factors from parts of `to` to parts of `of`, (parts, parts)."""
     exchange = flat_exchange(GRID, CELL)

@@ -1,9 +1,9 @@
-// No light between ground and clouds. Bouthors, Neyret and Lefebvre 2006 start from here.
+// No light between ground and clouds.
 
-vec3 bounce_ground(vec2 place) {
+vec3 bounce_ground(vec2 place, BounceHere here) {
     return vec3(0.0);
 }
 
-vec3 bounce_cloud(vec2 place) {
+vec3 bounce_cloud(vec2 place, BounceHere here) {
     return vec3(0.0);
 }

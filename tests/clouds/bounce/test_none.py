@@ -1,28 +1,17 @@
-"""No bounce: nothing comes back to either."""
+"""No bounce: no light is added."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
-import pytest
 
 from renderer.clouds.bounce.none import NoBounce
-
-Ask = Callable[..., np.ndarray]
-
-
-def test_ground_and_cloud_get_nothing(ask: Ask) -> None:
-    for function in ("bounce_ground", "bounce_cloud"):
-        assert ask({"bounce": NoBounce()}, f"{function}(p)", {"p": np.array([[3.0, 4.0]])}) == pytest.approx(
-            np.zeros((1, 3))
-        )
+from tests.clouds.bounce.conftest import Shown, middles, uneven
 
 
-def test_light_from_nowhere_is_found(ask: Ask, spoil: Callable) -> None:
-    with spoil(
-        "clouds/bounce/none.glsl",
-        "vec3 bounce_cloud(vec2 place) {\n    return vec3(0.0);",
-        "vec3 bounce_cloud(vec2 place) {\n    return vec3(1.0);",
-    ):
-        assert ask({"bounce": NoBounce()}, "bounce_cloud(p)", {"p": np.array([[3.0, 4.0]])}).min() > 0.5
+def test_nothing_is_added_anywhere(shown: Shown) -> None:
+    solved = NoBounce().solve(uneven(), None, {})
+    assert not solved.added.ground.any()
+    assert not solved.added.cloud.any()
+    places = np.concatenate([middles()[0][::50], [[1e6, 0.0]]])
+    for found in shown(NoBounce(), None, solved, places):
+        assert (found == 0).all()
