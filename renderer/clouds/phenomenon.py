@@ -45,10 +45,17 @@ SLOTS = (
         DEFAULTS["cloud_shadow"],
     ),
     Slot(
+        "basis",
+        "Basis",
+        "Functions by which transfer matrices describe bounced light; other bounces need none.",
+        "vec3 basis_ground(vec2 at); vec3 basis_cloud(vec2 at) // W m-2 at a place of the square, -1 to 1",
+        DEFAULTS["basis"],
+    ),
+    Slot(
         "bounce",
         "Bounce",
         "Light that goes between ground and clouds.",
-        "vec3 bounce_ground(vec2 place); vec3 bounce_cloud(vec2 place) // W m-2",
+        "vec3 bounce_ground(vec2 place, BounceHere here); vec3 bounce_cloud(vec2 place, BounceHere here) // W m-2",
         DEFAULTS["bounce"],
     ),
 )

@@ -135,7 +135,7 @@ WORLD_FILES = ("lib/pixel.glsl", "lib/camera.glsl", "clouds/path.glsl", "clouds/
 
 Chosen = tuple[tuple[str, type["CloudsTechnique"], tuple[tuple[str, str], ...]], ...]
 
-SHADE_SLOTS = ("geometry", "phase", "scattering", "cloud_shadow", "bounce")
+SHADE_SLOTS = ("geometry", "phase", "scattering", "cloud_shadow", "basis", "bounce")
 """Slots whose functions the picture calls, in the order in which they build on each other."""
 
 

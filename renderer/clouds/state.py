@@ -12,13 +12,14 @@ from renderer.world.camera import Camera, Orbit
 from renderer.world.state import SceneState
 from renderer.world.sun import Sun, SunDirection
 
-SLOTS = ("geometry", "phase", "scattering", "cloud_shadow", "bounce")
+SLOTS = ("geometry", "phase", "scattering", "cloud_shadow", "basis", "bounce")
 DEFAULTS = {
     "geometry": "sphere",
     "phase": "mie",
     "scattering": "adding_doubling",
     "cloud_shadow": "sun_ray",
-    "bounce": "none",
+    "basis": "object",
+    "bounce": "fft",
 }
 
 
@@ -56,6 +57,9 @@ class CloudsState(SceneState):
     )
     cloud_shadow: slot_union("clouds", "cloud_shadow") = _slot(  # type: ignore[valid-type]
         "cloud_shadow", "Cloud shadow", "What the layer leaves to the ground."
+    )
+    basis: slot_union("clouds", "basis") = _slot(  # type: ignore[valid-type]
+        "basis", "Basis", "Functions by which transfer matrices describe bounced light."
     )
     bounce: slot_union("clouds", "bounce") = _slot(  # type: ignore[valid-type]
         "bounce", "Bounce", "Light that goes between ground and clouds."

@@ -3,12 +3,7 @@
 // of the base and rho albedo of the ground; between endless uniform planes all bounces add R rho / (1 - R rho) of the first light.
 // Deviations: near the square's edge the light fades to that of endless planes that are everywhere as they are at the place.
 
-// What is at a place: first irradiance of the ground [W m-2], the ground's albedo, the reflectance of the base above.
-struct BounceHere {
-    vec3 irradiance;
-    vec3 albedo;
-    vec3 reflectance;
-};
+#include "clouds/bounce_here.glsl"
 
 // Place in the square, -1 to 1.
 vec2 bounce_at(vec2 place) {

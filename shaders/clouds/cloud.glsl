@@ -47,7 +47,10 @@ Lit stretch_light(Stretch s, vec3 origin, vec3 direction) {
 
     vec3 reflected = scattering_diffuse_reflectance(s.depth);
     vec3 passed = max(1.0 - reflected - exp(-1.66 * s.depth), vec3(0.0));
-    vec3 from_top = air_skylight_at(mu), from_base = bounce_cloud(place_of(point));
+    vec3 from_top = air_skylight_at(mu);
+    vec3 below = (sun_irradiance * sun_through_air(0.0, mu) * max(mu, 0.0) + from_top) * (1.0 - reflected);
+    vec3 albedo = ground_albedo(point, up, place_of(point), 0.0, layer_base);
+    vec3 from_base = bounce_cloud(place_of(point), BounceHere(below, albedo, reflected));
     light += (from_above ? reflected * from_top + passed * from_base : passed * from_top + reflected * from_base) / AIR_PI;
     bool there = s.t > 0.0 && s.depth > 1.0e-6;
     return Lit(there ? light : vec3(0.0), there ? scattering_direct(s.depth, s.mu_view) : vec3(1.0));
@@ -71,6 +74,7 @@ vec3 ground_light(vec3 point, float altitude, vec3 normal, vec3 albedo, float ov
     float facing = max(dot(normal, sun_direction), 0.0) * land_sees_sun(place, mu);
     Shade shade = cloud_shadow(point, altitude, mu, overhead);
     vec3 light = sun_irradiance * sun_through_air(altitude, mu) * (facing * shade.direct + max(mu, 0.0) * shade.diffuse);
-    light += air_skylight_at(mu) * shade.sky + bounce_ground(place);
+    light += air_skylight_at(mu) * shade.sky;
+    light += bounce_ground(place, BounceHere(light, albedo, 1.0 - shade.sky));
     return albedo / AIR_PI * light;
 }

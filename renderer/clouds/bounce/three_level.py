@@ -63,9 +63,9 @@ class ThreeLevel(BounceTechnique):
             raise ValueError("another technique solved these maps")
         return {"ground_map": solved.means[0], "cloud_map": solved.means[1]}
 
-    def numbers(self, maps: BounceMaps) -> dict[str, Any]:
+    def numbers(self, half: float, centre: tuple[float, float] = (0.0, 0.0)) -> dict[str, Any]:
         """The square, and the levels' weights."""
-        return {**super().numbers(maps), "bounce_weights": tuple(float(w) for w in level_weights(self.reading))}
+        return {**super().numbers(half, centre), "bounce_weights": tuple(float(w) for w in level_weights(self.reading))}
 
 
 def _levels(exchange: ThreeLevelExchange, field: np.ndarray) -> np.ndarray:

@@ -7,6 +7,8 @@ from typing import Any, ClassVar, Literal
 
 import numpy as np
 
+from renderer.clouds.bakes import land_bake
+from renderer.clouds.first_light import bake_bounce_ground
 from renderer.clouds.radiosity.bases import GRID, Basis, haar_basis
 from renderer.clouds.radiosity.flat import first
 from renderer.clouds.radiosity.kernel import flat_exchange
@@ -46,9 +48,13 @@ class TransferMatrices(BounceTechnique):
     )
 
     def bakes(self, state: Any) -> list[Bake]:
-        """The matrices of the state's basis over its relief: `state.bounce_ground()` gives the height of the cloud base
-        in m, and the bake of the ground over the square or None where all is level."""
-        return [self.matrix_bake(state.basis, *state.bounce_ground())]
+        """The matrices of the state's basis over its land; level land has none of its own."""
+        ground = None
+        if state.land.kind != "flat":
+            named = {name: getattr(state.planet, name) for name in ("albedo", "snow_albedo", "snow_line")}
+            arguments = {"height": state.layer.base, **named}
+            ground = Bake("bounce_ground", bake_bounce_ground, arguments, (land_bake(state),), seconds=1)
+        return [self.matrix_bake(state.basis, state.layer.base, ground)]
 
     def matrix_bake(self, basis: Any, height: float, ground: Bake | None = None) -> Bake:
         """The bake `transfer`.

@@ -1,13 +1,7 @@
 """What a technique of the slots `bounce` and `basis` gives: maps of added light, and how a shader reads them.
 
-The renderer makes the maps of first light (`BounceMaps`, on the square of `square_cells`) and asks:
-
-    solved = state.bounce.solve(maps, state.basis, baked)
-    textures = {"bounce_" + name: array for name, array in state.bounce.pictures(solved).items()}
-    textures |= {"basis_" + name: array for name, array in state.basis.pictures(solved).items()}
-    numbers = state.bounce.numbers(maps)
-
-again whenever the maps change. `numbers` fills `extra_declarations`.
+First light is mapped over a square (`renderer.clouds.first_light`), the technique adds bounces to the maps, and the
+shader reads what was added. Both slots read one solution, so it is kept.
 """
 
 from __future__ import annotations
@@ -18,12 +12,12 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from renderer.clouds.radiosity.bases import GRID, Basis
+from renderer.clouds.first_light import bounce_maps, moment
+from renderer.clouds.radiosity.bases import HALF, Basis
 from renderer.clouds.radiosity.maps import Bounced, BounceMaps
 from renderer.clouds.technique import CloudsTechnique
 from renderer.core.technique import Arrays
-
-DARK = np.zeros((GRID, GRID, 3), np.float32)
+from renderer.world.sun import angles
 
 
 @dataclass(frozen=True)
@@ -77,6 +71,14 @@ class BasisTechnique(CloudsTechnique):
         """Its textures, (H, W, C) float32; row 0 at the south."""
         raise NotImplementedError
 
+    def frame_key(self, state: Any) -> tuple[Any, ...]:
+        """What the solution depends on."""
+        return state.bounce.frame_key(state)
+
+    def frame_textures(self, state: Any, baked: Mapping[str, Arrays]) -> dict[str, np.ndarray]:
+        """The coefficients of the state's solution."""
+        return self.pictures(solved_of(state, baked))
+
 
 class BounceTechnique(CloudsTechnique):
     """Light that bounces between ground and cloud base.
@@ -106,6 +108,40 @@ class BounceTechnique(CloudsTechnique):
         return {"ground_map": np.asarray(solved.even.ground, np.float32),
                 "cloud_map": np.asarray(solved.even.cloud, np.float32)}
 
-    def numbers(self, maps: BounceMaps) -> dict[str, Any]:
-        """Values of `extra_declarations`."""
-        return {"bounce_centre": tuple(float(v) for v in maps.centre), "bounce_half": float(maps.half)}
+    def numbers(self, half: float, centre: tuple[float, float] = (0.0, 0.0)) -> dict[str, Any]:
+        """Values of `extra_declarations` for a square of a half side and a centre, m."""
+        return {"bounce_centre": tuple(float(v) for v in centre), "bounce_half": float(half)}
+
+    def frame_key(self, state: Any) -> tuple[Any, ...]:
+        """What the solution depends on: sun, layer, clouds, moment, land and ground, and the techniques."""
+        where = (state.layer, state.clouds, moment(state), state.planet, state.land, state.air)
+        return (angles(state.sun), *where, state.scattering, state.bounce, state.basis)
+
+    def frame_textures(self, state: Any, baked: Mapping[str, Arrays]) -> dict[str, np.ndarray]:
+        """Maps of the state's solution."""
+        return self.pictures(solved_of(state, baked))
+
+    def constants(self, state: Any, baked: Mapping[str, Arrays]) -> dict[str, Any]:
+        """Those of the square around the site."""
+        return self.numbers(HALF * state.layer.base)
+
+
+KEPT: list[tuple[tuple[Any, ...], Mapping[str, Arrays], Solved]] = []
+"""The last solutions, for both slots."""
+
+KEEP = 4
+
+
+def solved_of(state: Any, baked: Mapping[str, Arrays]) -> Solved:
+    """The solution of a document, computed once for both slots.
+
+    Args:
+        baked: arrays of its bakes by name; the same arrays mean the same solution.
+    """
+    key = state.bounce.frame_key(state)
+    for known, arrays, solved in KEPT:
+        if known == key and all(arrays.get(name) is array for name, array in baked.items()):
+            return solved
+    solved = state.bounce.solve(bounce_maps(state, baked), state.basis, baked)
+    KEPT[:] = [(key, dict(baked), solved), *KEPT[: KEEP - 1]]
+    return solved

@@ -56,7 +56,7 @@ def shown(thread: GLThread) -> Shown:
 
 def _shown(gl: GL, bounce: BounceTechnique, basis: BasisTechnique, solved: Solved, places: np.ndarray,
            here: tuple[float, float, float]) -> tuple[np.ndarray, np.ndarray]:
-    text, pictures, values, macros = [], {}, dict(bounce.numbers(solved.maps)), {}
+    text, pictures, values, macros = [], {}, dict(bounce.numbers(solved.maps.half, solved.maps.centre)), {}
     for slot, technique in (("basis", basis), ("bounce", bounce)):
         text += [uniform_declarations(type(technique), slot), *technique.extra_declarations]
         text += [f"uniform {kind} {slot}_{name};" for name, kind in technique.textures.items()]

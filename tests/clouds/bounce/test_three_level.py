@@ -72,7 +72,7 @@ def test_distance_to_the_exact_kernel() -> None:
 
 
 def test_the_readings_are_told_apart() -> None:
-    weights = [ThreeLevel(reading=reading).numbers(maps())["bounce_weights"] for reading in READINGS]  # type: ignore[arg-type]
+    weights = [ThreeLevel(reading=reading).numbers(4e4)["bounce_weights"] for reading in READINGS]  # type: ignore[arg-type]
     assert len({round(w[0], 3) for w in weights}) == 3
     for w in weights:
         assert sum(w) == pytest.approx(1)

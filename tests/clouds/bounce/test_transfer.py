@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -13,11 +12,13 @@ from renderer.clouds.basis.object import ObjectBasis
 from renderer.clouds.basis.solid_angle import SolidAngleBasis
 from renderer.clouds.bounce.fft import Fft
 from renderer.clouds.bounce.transfer import TransferMatrices
+from renderer.clouds.planet import FlatLand, Layer
 from renderer.clouds.radiosity.bases import CELL, GRID, HALF
 from renderer.clouds.radiosity.matrices import bake_transfer
 from renderer.clouds.radiosity.technique import BasisTechnique
+from renderer.clouds.state import CloudsState
 from renderer.core.errors import Cancelled, InputError
-from renderer.core.technique import Arrays, Bake
+from renderer.core.technique import Arrays
 from tests.clouds.bounce.conftest import HEIGHT, Shown, maps, middles, uneven
 
 BASES = (ObjectBasis(), SolidAngleBasis(), HaarBasis())
@@ -46,7 +47,7 @@ def baked(technique: TransferMatrices, basis: BasisTechnique, ground: Mapping[st
 
 @pytest.mark.parametrize("basis", BASES, ids=lambda basis: basis.kind)
 def test_even_planes_give_the_closed_sum(basis: BasisTechnique) -> None:
-    for technique in (TransferMatrices(), TransferMatrices(gather=False), TransferMatrices(method="bounces", bounces=2)):
+    for technique in (TransferMatrices(), TransferMatrices(gather=False), TransferMatrices(method="bounces")):
         found = technique.solve(maps(), basis, baked(technique, basis)).added
         np.testing.assert_allclose(found.ground, 200 * 0.18 / 0.82, rtol=2e-3)
         np.testing.assert_allclose(found.cloud, 60 / 0.82, rtol=2e-3)
@@ -104,12 +105,13 @@ def test_the_shader_adds_what_was_gathered(shown: Shown, spoil: Callable) -> Non
 
 def test_the_bake_follows_basis_relief_and_height() -> None:
     technique = TransferMatrices(coefficients=256)
-    ground = Bake("bounce_ground", lambda *_: {}, {})
-    state = SimpleNamespace(basis=SolidAngleBasis(centre_height=5.0), bounce_ground=lambda: (1000.0, ground))
+    state = CloudsState(basis=SolidAngleBasis(centre_height=5.0), layer=Layer(base=1000.0))
     (bake,) = technique.bakes(state)
-    assert bake.inputs == (ground,)
+    assert [source.name for source in bake.inputs] == ["bounce_ground"]
+    assert [source.name for source in bake.inputs[0].inputs] == ["land"]
     assert bake.arguments["basis"] == "solid_angle"
     assert (bake.arguments["height"], bake.arguments["centre_height"], bake.arguments["coefficients"]) == (1000, 5, 256)
+    assert technique.bakes(CloudsState(land=FlatLand()))[0].inputs == ()
 
 
 def test_relief_of_another_size_is_refused_and_work_stops() -> None:

@@ -1,0 +1,191 @@
+"""Maps of first light on ground and cloud base over the square around the site: what bounces start from.
+
+The numpy twin of what `shaders/clouds/cloud.glsl` computes at a point of the ground, averaged over cells of half a
+cloud height; the Earth is flat over the square.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from scipy.ndimage import map_coordinates
+
+from renderer.clouds.air import MARGIN
+from renderer.clouds.cloud_map import thickness_map
+from renderer.clouds.land import horizon_towards
+from renderer.clouds.radiosity.bases import GRID
+from renderer.clouds.radiosity.maps import BounceMaps, square_cells
+from renderer.clouds.world_scale import AIR_TOP, LAND_CELL, SYSTEMS_SIDE
+from renderer.core.technique import Arrays
+from renderer.world.sky import SOLAR_CONSTANT, sky_for
+from renderer.world.sun import angles, direction
+
+if TYPE_CHECKING:
+    from renderer.clouds.state import CloudsState
+
+WITHIN = 4
+"""Places along each side of a cell whose mean it takes."""
+
+HIGHEST = 0.9
+"""Ground that rises above this share of the base's height is taken to lie there: mountains do not pierce the layer."""
+
+DRIFTED = 1 / 8
+"""Part of a cell that the layer drifts before its light is bounced anew."""
+
+DEPTHS = np.concatenate([[0.0], np.geomspace(1e-3, 1e4, 256)])
+"""Optical depths at which the layer's answers are tabulated for one sun."""
+
+
+def moment(state: CloudsState) -> float:
+    """The document's time, s, in steps in which the layer drifts by a part of a cell."""
+    step = DRIFTED * square_cells(state.layer.base)[1] / max(state.layer.wind, 1.0)
+    return math.floor(state.time / step) * step
+
+
+@dataclass(frozen=True)
+class Land:
+    """The ground of the square at `WITHIN` places a cell and side.
+
+    Attributes:
+        height: m, (P, P), row 0 at the south. albedo: (P, P, 3). rise: to the east and to the north, (2, P, P).
+        horizon: elevation above which the sun is seen, rad; none where the land ends.
+    """
+
+    height: np.ndarray
+    albedo: np.ndarray
+    rise: np.ndarray
+    horizon: np.ndarray
+
+
+def places(base: float) -> np.ndarray:
+    """Coordinates of the sampled places along either axis, m from the site, (P,)."""
+    n, cell = square_cells(base)
+    return ((np.arange(n * WITHIN) + 0.5) / WITHIN - n / 2) * cell
+
+
+def cells(field: np.ndarray) -> np.ndarray:
+    """Means over cells of what was sampled, (P, P[, C]) to (GRID, GRID[, C])."""
+    shape = (GRID, WITHIN, GRID, WITHIN, *field.shape[2:])
+    return np.asarray(field.reshape(shape).mean(axis=(1, 3)))
+
+
+def land_of(land: Arrays, planet: Mapping[str, Any], base: float, azimuth: float) -> Land:
+    """The ground of the square.
+
+    Args:
+        land: of `bake_land`. planet: `albedo`, `snow_albedo`, `snow_line`. base: m. azimuth: of the sun, rad.
+    """
+    heights = np.asarray(land["height"], np.float64)
+    coarse = heights.reshape(len(heights) // 2, 2, -1, 2).mean(axis=(1, 3))
+    north, east = np.gradient(coarse, 2 * LAND_CELL)
+    at = np.floor(places(base) / (2 * LAND_CELL) + len(coarse) / 2).astype(int)
+    inside = (at >= 0) & (at < len(coarse))
+    within = inside[:, None] & inside[None, :]
+    rows, columns = np.ix_(np.clip(at, 0, len(coarse) - 1), np.clip(at, 0, len(coarse) - 1))
+
+    def sampled(field: np.ndarray, beyond: float) -> np.ndarray:
+        return np.where(within, field[rows, columns], beyond)
+
+    height = sampled(coarse, 0.0)
+    t = np.clip((height - planet["snow_line"]) / 120 + 0.5, 0, 1)
+    snow = (t * t * (3 - 2 * t))[..., None]
+    albedo = np.array(planet["albedo"]) * (1 - snow) + np.array(planet["snow_albedo"]) * snow
+    rise = np.stack([sampled(east, 0.0), sampled(north, 0.0)])
+    return Land(height, albedo, rise, sampled(horizon_towards(land, azimuth), -1.0))
+
+
+def depth_at(state: CloudsState, fields: Arrays, shift: tuple[float, float]) -> np.ndarray:
+    """Optical depth of the layer over the sampled places moved by `shift` [m], (P, P)."""
+    layer, clouds, time = state.layer, state.clouds, moment(state)
+    side = 1000.0 if clouds.kind == "uniform" else clouds.side
+    way, azimuth = layer.wind * time, math.radians(layer.wind_azimuth)
+    along = places(layer.base)
+    x = along + shift[0] - way * math.sin(azimuth)
+    y = along + shift[1] - way * math.cos(azimuth)
+    texels = fields["fields"].shape[1]
+    u, v = (np.floor((w / side + 0.5) * texels).astype(int) for w in (x, y))
+    # The map is made of its fields texel by texel, so those that are looked at suffice.
+    looked = {"fields": fields["fields"][:, v[:, None] % texels, u[None, :] % texels]}
+    found = np.maximum(thickness_map(clouds, looked, time), 0).astype(np.float64)
+    found = np.ones((len(y), len(x))) if clouds.kind == "uniform" else found
+    if clouds.kind == "asset" and not clouds.repeats:
+        found *= ((v >= 0) & (v < texels))[:, None] & ((u >= 0) & (u < texels))[None, :]
+    systems = np.asarray(fields["systems"], np.float64)
+    at = [(w / SYSTEMS_SIDE) * len(systems) - 0.5 for w in (y, x)]
+    found *= map_coordinates(systems, np.meshgrid(*at, indexing="ij"), order=1, mode="grid-wrap")
+    return layer.extinction * layer.thickness * found
+
+
+def bounce_maps(state: CloudsState, baked: Mapping[str, Arrays]) -> BounceMaps:
+    """First light of a document's sun and moment.
+
+    Args:
+        baked: arrays by name: `sky`, `air`, `land`, `fields`, and what the scattering technique asks for.
+    """
+    azimuth, elevation = angles(state.sun)
+    sun, mu = direction(state.sun), math.sin(elevation)
+    light = sky_for(baked["sky"], elevation)
+    base = state.layer.base
+    planet = {name: getattr(state.planet, name) for name in ("albedo", "snow_albedo", "snow_line")}
+    land = land_of(baked["land"], planet, base, azimuth)
+    slant = min(base / max(mu, 0.02), 20 * base)
+    depth = depth_at(state, baked["fields"], (0.0, 0.0))
+    along = depth_at(state, baked["fields"], (slant * sun[0], slant * sun[1]))
+
+    model = state.scattering.model(baked)
+    steep = np.full_like(DEPTHS, max(mu, 0.02))
+    passed = model.transmittance(DEPTHS, steep)
+    direct = _bands(model.direct(DEPTHS, steep))
+    even = model.diffuse_reflectance(DEPTHS)
+
+    length = np.sqrt(1 + (land.rise**2).sum(axis=0))
+    facing = np.maximum(mu - land.rise[0] * sun[0] - land.rise[1] * sun[1], 0) / length
+    t = np.clip((elevation - land.horizon) / 0.0093 + 0.5, 0, 1)
+    facing = facing * (t * t * (3 - 2 * t))
+    above = _read(np.concatenate([np.maximum(passed - direct, 0), even], axis=1), depth)
+    beam = facing[..., None] * _read(direct, along) + max(mu, 0.0) * above[..., :3]
+    ground = light.sun_irradiance * beam + light.sky_irradiance * (1 - above[..., 3:])
+    n, cell = square_cells(base)
+    albedo = cells(land.albedo * ground) / np.maximum(cells(ground), 1e-9)
+    below = _beam(baked["air"], base, mu) * SOLAR_CONSTANT * max(-mu, 0.0)
+    return BounceMaps(
+        cell=cell, height=base, elevation=np.minimum(cells(land.height), HIGHEST * base), albedo=albedo,
+        reflectance=cells(above[..., 3:]), ground=cells(ground), cloud=np.broadcast_to(below, (n, n, 3)),
+    )
+
+
+def _bands(values: np.ndarray) -> np.ndarray:
+    values = np.asarray(values)
+    return values if values.ndim == 2 else np.repeat(values[:, None], 3, axis=1)
+
+
+def _read(table: np.ndarray, depth: np.ndarray) -> np.ndarray:
+    """Values at optical depths, from those at DEPTHS (D, C): (.., C)."""
+    place = np.interp(depth, DEPTHS, np.arange(float(len(DEPTHS))))
+    low = np.minimum(place.astype(int), len(DEPTHS) - 2)
+    return table[low] + (place - low)[..., None] * (table[low + 1] - table[low])
+
+
+def _beam(air: Arrays, altitude: float, mu: float) -> np.ndarray:
+    """Share of the sun's light that arrives at a height [m], (3,): from the table of `bake_air`."""
+    table = np.asarray(air["beam"], np.float64)
+    rows, columns = table.shape[:2]
+    radius = 6.36e6 + altitude
+    dip = math.sqrt(altitude * (2 * 6.36e6 + altitude)) / radius
+    above = ((mu + dip) / (1 + dip) + MARGIN) / (1 + MARGIN)
+    if above < 0:
+        return np.zeros(3)
+    at = [[math.sqrt(altitude / AIR_TOP) * (rows - 1)], [math.sqrt(above) * (columns - 1)]]
+    return np.array([map_coordinates(table[..., band], at, order=1, mode="nearest")[0] for band in range(3)])
+
+
+def bake_bounce_ground(arguments: dict[str, Any], inputs: dict[str, Arrays], progress: Any) -> dict[str, np.ndarray]:
+    """The ground of the square for transfer matrices: `elevation` [m] and `albedo`, (GRID, GRID[, 3])."""
+    progress(0.0, "averaging the land over the square")
+    land = land_of(inputs["land"], arguments, arguments["height"], 0.0)
+    elevation = np.minimum(cells(land.height), HIGHEST * arguments["height"])
+    return {"elevation": elevation, "albedo": cells(land.albedo)}
