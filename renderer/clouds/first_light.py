@@ -153,8 +153,13 @@ def bounce_maps(state: CloudsState, baked: Mapping[str, Arrays]) -> BounceMaps:
     albedo = cells(land.albedo * ground) / np.maximum(cells(ground), 1e-9)
     below = _beam(baked["air"], base, mu) * SOLAR_CONSTANT * max(-mu, 0.0)
     return BounceMaps(
-        cell=cell, height=base, elevation=np.minimum(cells(land.height), HIGHEST * base), albedo=albedo,
-        reflectance=cells(above[..., 3:]), ground=cells(ground), cloud=np.broadcast_to(below, (n, n, 3)),
+        cell=cell,
+        height=base,
+        elevation=np.minimum(cells(land.height), HIGHEST * base),
+        albedo=albedo,
+        reflectance=cells(above[..., 3:]),
+        ground=cells(ground),
+        cloud=np.broadcast_to(below, (n, n, 3)),
     )
 
 

@@ -18,8 +18,13 @@ from renderer.core.technique import Arrays, Bake
 from renderer.world.sky import sky_for
 
 Maps = Callable[..., BounceMaps]
-EVEN: dict[str, Any] = {"clouds": {"kind": "uniform"}, "land": {"kind": "flat"}, "phase": {"kind": "henyey_greenstein"},
-                        "scattering": {"kind": "delta_eddington"}, "bounce": {"kind": "fft"}}
+EVEN: dict[str, Any] = {
+    "clouds": {"kind": "uniform"},
+    "land": {"kind": "flat"},
+    "phase": {"kind": "henyey_greenstein"},
+    "scattering": {"kind": "delta_eddington"},
+    "bounce": {"kind": "fft"},
+}
 NEEDED = ("sky", "air", "land", "fields", "phase", "order_fluxes")
 
 
@@ -115,8 +120,12 @@ def test_mountains_have_snow_shadows_and_slopes(mapped: Maps) -> None:
 
 def test_the_ground_of_the_matrices_is_that_of_the_light(baked: Callable[[Bake], Arrays], mapped: Maps) -> None:
     document = state(land={"kind": "built_in"}, planet={"snow_line": 500.0})
-    given = {"height": 2500.0, "albedo": document.planet.albedo, "snow_albedo": document.planet.snow_albedo,
-             "snow_line": 500.0}
+    given = {
+        "height": 2500.0,
+        "albedo": document.planet.albedo,
+        "snow_albedo": document.planet.snow_albedo,
+        "snow_line": 500.0,
+    }
     made = bake_bounce_ground(given, {"land": arrays(baked, document)["land"]}, lambda share, words: None)
     found = mapped(land={"kind": "built_in"}, planet={"snow_line": 500.0})
     np.testing.assert_allclose(made["elevation"], found.elevation)

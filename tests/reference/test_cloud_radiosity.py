@@ -39,8 +39,10 @@ def pair() -> tuple[Solution, Solution]:
 def test_rays_and_quadrature_agree_within_the_stated_error(pair: tuple[Solution, Solution]) -> None:
     exact, cast = pair
     assert exact.ground_error.max() < 1e-5
-    for found, right, error in ((cast.ground, exact.ground, cast.ground_error),
-                                (cast.cloud, exact.cloud, cast.cloud_error)):
+    for found, right, error in (
+        (cast.ground, exact.ground, cast.ground_error),
+        (cast.cloud, exact.cloud, cast.cloud_error),
+    ):
         assert rms(found - right) < 1.5 * rms(error)
         assert abs(np.mean(found - right)) < 1e-3
         assert rms(error) < 0.01 * right.mean()
@@ -66,8 +68,9 @@ def test_walls_light_the_middle_of_a_pit() -> None:
     places = np.hypot(*np.meshgrid(*[np.linspace(-8, 8, N + 1)] * 2))
     walls = np.where(places > 2.2, 0.8, 0.0)
     middle = (N // 2, N // 2)
-    dark, bright = (by_rays(scene(walls, ground=albedo, cloud=0.0), 512).ground[middle] / albedo
-                    for albedo in (1e-4, 0.5))
+    dark, bright = (
+        by_rays(scene(walls, ground=albedo, cloud=0.0), 512).ground[middle] / albedo for albedo in (1e-4, 0.5)
+    )
     assert bright > dark + 0.02
 
 

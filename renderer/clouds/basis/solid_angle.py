@@ -21,8 +21,14 @@ class SolidAngleBasis(BasisTechnique):
 
     kind: Literal["solid_angle"] = "solid_angle"
     centre_height: float = param(
-        8.0, label="Height of the point", help="From which the cells look equal, in heights of the cloud base; the "
-        "lower, the finer the middle and the coarser the rim.", unit="ratio", cost="bake", ge=1, le=64,
+        8.0,
+        label="Height of the point",
+        help="From which the cells look equal, in heights of the cloud base; the "
+        "lower, the finer the middle and the coarser the rim.",
+        unit="ratio",
+        cost="bake",
+        ge=1,
+        le=64,
         source="Belcour 2009, section 5.2.2",
     )
 
@@ -33,8 +39,11 @@ class SolidAngleBasis(BasisTechnique):
     def pictures(self, solved: Solved) -> dict[str, np.ndarray]:
         """`ground_map` and `cloud_map`: a texel a cell, (1, n, C); `parts`: which cell is where, (GRID, GRID, 1)."""
         labels = np.zeros((GRID, GRID)) if solved.ground is None else solved.ground.basis.labels
-        return {"ground_map": _row(solved.ground), "cloud_map": _row(solved.cloud),
-                "parts": labels[..., None].astype(np.float32)}
+        return {
+            "ground_map": _row(solved.ground),
+            "cloud_map": _row(solved.cloud),
+            "parts": labels[..., None].astype(np.float32),
+        }
 
 
 def _row(side: InBasis | None) -> np.ndarray:

@@ -22,11 +22,20 @@ class Fft(BounceTechnique):
 
     kind: Literal["fft"] = "fft"
     bounces: int = param(
-        4, label="Bounces", help="From the ground to the clouds and back.", unit="count", cost="host", ge=1, le=32,
+        4,
+        label="Bounces",
+        help="From the ground to the clouds and back.",
+        unit="count",
+        cost="host",
+        ge=1,
+        le=32,
         source="Belcour 2009, section 5.2.1",
     )
     tail: bool = param(
-        True, label="Closed tail", help="Add what later bounces would, as a geometric series.", cost="host",
+        True,
+        label="Closed tail",
+        help="Add what later bounces would, as a geometric series.",
+        cost="host",
         source="errata 001-10",
     )
 

@@ -31,20 +31,34 @@ class ThreeLevel(BounceTechnique):
     paper: ClassVar[str] = "Bouthors, Neyret & Lefebvre 2006; Belcour 2009, section 5.1"
     textures: ClassVar[Mapping[str, str]] = {"ground_map": "sampler3D", "cloud_map": "sampler3D"}
     extra_declarations: ClassVar[tuple[str, ...]] = (
-        *BounceTechnique.extra_declarations, "uniform vec3 bounce_weights; // of the means over H, 2H and 8H",
+        *BounceTechnique.extra_declarations,
+        "uniform vec3 bounce_weights; // of the means over H, 2H and 8H",
     )
 
     kind: Literal["three_level"] = "three_level"
     reading: Literal["texels", "taps", "discs"] = param(
-        "taps", label="Footprints", help="What a level's mean is taken over: the texel that holds the point, the reach "
-        "of a bilinear tap, or discs.", cost="host", source="Belcour 2009, section 5.1.2 (formulas a7, errata 001-6)",
+        "taps",
+        label="Footprints",
+        help="What a level's mean is taken over: the texel that holds the point, the reach "
+        "of a bilinear tap, or discs.",
+        cost="host",
+        source="Belcour 2009, section 5.1.2 (formulas a7, errata 001-6)",
     )
     bounces: int = param(
-        4, label="Bounces", help="From the ground to the clouds and back.", unit="count", cost="host", ge=1, le=32,
+        4,
+        label="Bounces",
+        help="From the ground to the clouds and back.",
+        unit="count",
+        cost="host",
+        ge=1,
+        le=32,
         source="Belcour 2009, section 5.1.1: 2 to 8",
     )
     tail: bool = param(
-        True, label="Closed tail", help="Add what later bounces would, as a geometric series.", cost="host",
+        True,
+        label="Closed tail",
+        help="Add what later bounces would, as a geometric series.",
+        cost="host",
         source="errata 001-10",
     )
 

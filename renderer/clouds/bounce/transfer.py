@@ -31,20 +31,35 @@ class TransferMatrices(BounceTechnique):
 
     kind: Literal["transfer"] = "transfer"
     coefficients: Literal[15, 64, 256] = param(
-        64, label="Coefficients", help="Functions that describe the light of either side.", cost="bake",
+        64,
+        label="Coefficients",
+        help="Functions that describe the light of either side.",
+        cost="bake",
         source="Belcour 2009, annex A.2",
     )
     method: Literal["direct", "bounces"] = param(
-        "direct", label="Solution", help="All bounces by one linear system, or a fixed number of them.", cost="host",
+        "direct",
+        label="Solution",
+        help="All bounces by one linear system, or a fixed number of them.",
+        cost="host",
         source="errata 001-10",
     )
     bounces: int = param(
-        4, label="Bounces", help="From the ground to the clouds and back, where they are counted.", unit="count",
-        cost="host", ge=1, le=32, source="Belcour 2009, section 5.2.1",
+        4,
+        label="Bounces",
+        help="From the ground to the clouds and back, where they are counted.",
+        unit="count",
+        cost="host",
+        ge=1,
+        le=32,
+        source="Belcour 2009, section 5.2.1",
     )
     gather: bool = param(
-        True, label="Final gather", help="Let each place gather the light of the basis by the exact kernel of level "
-        "planes, and leave to the basis what relief changes of it: no blocks are seen.", cost="host",
+        True,
+        label="Final gather",
+        help="Let each place gather the light of the basis by the exact kernel of level "
+        "planes, and leave to the basis what relief changes of it: no blocks are seen.",
+        cost="host",
     )
 
     def bakes(self, state: Any) -> list[Bake]:
@@ -63,8 +78,13 @@ class TransferMatrices(BounceTechnique):
             basis: the technique of the slot `basis`. height: of the cloud base, m.
             ground: bake of `elevation` and `albedo` over the square, whose name is `bounce_ground`; none if level.
         """
-        arguments = {"basis": basis.kind, "coefficients": self.coefficients, "height": float(height), "rays": RAYS,
-                     "centre_height": float(getattr(basis, "centre_height", 8.0))}
+        arguments = {
+            "basis": basis.kind,
+            "coefficients": self.coefficients,
+            "height": float(height),
+            "rays": RAYS,
+            "centre_height": float(getattr(basis, "centre_height", 8.0)),
+        }
         return Bake("transfer", bake_transfer, arguments, () if ground is None else (ground,), version=1, seconds=12)
 
     def solve(self, maps: BounceMaps, basis: BasisTechnique | None, baked: Mapping[str, Arrays]) -> Solved:
@@ -77,8 +97,11 @@ class TransferMatrices(BounceTechnique):
         leaving = tuple(first(field) for field in maps.leaving())
         lit = (below.analyse(leaving[0]).astype(np.float32), above.analyse(leaving[1]).astype(np.float32))
         answers = Answers.of(below, above, albedo, reflectance)
-        ground, cloud = (direct(transfer, answers, *lit) if self.method == "direct" else
-                         by_bounces(transfer, answers, *lit, 2 * self.bounces, tail=True))
+        ground, cloud = (
+            direct(transfer, answers, *lit)
+            if self.method == "direct"
+            else by_bounces(transfer, answers, *lit, 2 * self.bounces, tail=True)
+        )
         even = Bounced(0 * maps.ground, 0 * maps.ground)
         if self.gather:
             change = baked["transfer"]

@@ -73,8 +73,12 @@ def bake_transfer(
         below = above = basis_of(arguments["basis"], arguments["coefficients"], arguments["centre_height"])
     found = made(below, above)
     level = closed(flat_transfer(below, above, detail), below, above)
-    return {**found.arrays(), **kept, "relief_from_cloud": found.from_cloud - level.from_cloud,
-            "relief_from_ground": found.from_ground - level.from_ground}
+    return {
+        **found.arrays(),
+        **kept,
+        "relief_from_cloud": found.from_cloud - level.from_cloud,
+        "relief_from_ground": found.from_ground - level.from_ground,
+    }
 
 
 def basis_of(kind: str, coefficients: int, centre_height: float = 8.0) -> Basis:
@@ -86,8 +90,10 @@ def _wavelets(made: Callable[[Basis, Basis], Transfer], albedo: np.ndarray, coef
     """Which wavelets the light of an even cloud over this ground needs, found with all of them."""
     whole = haar_basis(np.arange(HAAR_CELLS * HAAR_CELLS))
     ground, cloud = full_solution(made(whole, whole), whole, albedo, np.full((GRID, GRID), NOMINAL), albedo, 0 * albedo)
-    return {"ground_kept": largest_wavelets(np.stack([ground, ground / albedo.clip(1e-3)]), coefficients, RENDERED),
-            "cloud_kept": largest_wavelets(cloud[None], coefficients, RENDERED)}
+    return {
+        "ground_kept": largest_wavelets(np.stack([ground, ground / albedo.clip(1e-3)]), coefficients, RENDERED),
+        "cloud_kept": largest_wavelets(cloud[None], coefficients, RENDERED),
+    }
 
 
 def full_solution(
@@ -101,5 +107,7 @@ def full_solution(
     answers = Answers.of(whole, whole, albedo, reflectance)
     first = whole.analyse(ground).astype(np.float32), whole.analyse(cloud).astype(np.float32)
     found = direct(transfer, answers, *first)
-    return (whole.synthesise(answers.ground @ found[0] + first[0]),
-            whole.synthesise(answers.cloud @ found[1] + first[1]))
+    return (
+        whole.synthesise(answers.ground @ found[0] + first[0]),
+        whole.synthesise(answers.cloud @ found[1] + first[1]),
+    )

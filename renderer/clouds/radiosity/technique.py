@@ -105,8 +105,10 @@ class BounceTechnique(CloudsTechnique):
 
     def pictures(self, solved: Solved) -> dict[str, np.ndarray]:
         """Its textures: `ground_map` and `cloud_map`, (N, N, C) float32, row 0 at the south."""
-        return {"ground_map": np.asarray(solved.even.ground, np.float32),
-                "cloud_map": np.asarray(solved.even.cloud, np.float32)}
+        return {
+            "ground_map": np.asarray(solved.even.ground, np.float32),
+            "cloud_map": np.asarray(solved.even.cloud, np.float32),
+        }
 
     def numbers(self, half: float, centre: tuple[float, float] = (0.0, 0.0)) -> dict[str, Any]:
         """Values of `extra_declarations` for a square of a half side and a centre, m."""

@@ -25,13 +25,23 @@ def evaluated(thread: GLThread) -> Evaluated:
     return lambda *arguments: thread.call(_evaluated, *arguments)
 
 
-def _evaluated(gl: GL, technique: BasisTechnique, basis: Basis, ground: np.ndarray, cloud: np.ndarray,
-               at: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _evaluated(
+    gl: GL, technique: BasisTechnique, basis: Basis, ground: np.ndarray, cloud: np.ndarray, at: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
     solved: Any = SimpleNamespace(ground=InBasis(basis, ground), cloud=InBasis(basis, cloud))
     made = {f"basis_{name}": gl.texture2d(array) for name, array in technique.pictures(solved).items()}
     try:
-        found = [probe(gl, [glsl_file("clouds", "basis", technique.kind)],  # type: ignore[attr-defined]
-                       f"basis_{side}(at)", {"at": at}, 3, textures=made) for side in ("ground", "cloud")]
+        found = [
+            probe(
+                gl,
+                [glsl_file("clouds", "basis", technique.kind)],  # type: ignore[attr-defined]
+                f"basis_{side}(at)",
+                {"at": at},
+                3,
+                textures=made,
+            )
+            for side in ("ground", "cloud")
+        ]
     finally:
         for texture in made.values():
             texture.release()

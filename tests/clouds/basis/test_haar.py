@@ -27,10 +27,15 @@ def test_the_shader_sums_the_wavelets(evaluated: Evaluated) -> None:
     assert error(evaluated) < 1e-5
 
 
-@pytest.mark.parametrize(("right", "wrong"), [
-    ("1.0 - 2.0 * step", "2.0 * step"), ("found += turn.y * texel", "found += turn.x * texel"),
-    ("const int BASIS_LEVELS = 5", "const int BASIS_LEVELS = 4"), ("count - 1 + square.y", "count - 1 + square.x"),
-])
+@pytest.mark.parametrize(
+    ("right", "wrong"),
+    [
+        ("1.0 - 2.0 * step", "2.0 * step"),
+        ("found += turn.y * texel", "found += turn.x * texel"),
+        ("const int BASIS_LEVELS = 5", "const int BASIS_LEVELS = 4"),
+        ("count - 1 + square.y", "count - 1 + square.x"),
+    ],
+)
 def test_a_wrong_wavelet_is_found(evaluated: Evaluated, spoil: Callable, right: str, wrong: str) -> None:
     with spoil(GLSL, right, wrong):
         assert error(evaluated) > 1e-2

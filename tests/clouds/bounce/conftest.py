@@ -25,8 +25,13 @@ Shown = Callable[..., tuple[np.ndarray, np.ndarray]]
 def maps(**given: Any) -> BounceMaps:
     """Even maps, but for what is given."""
     one = np.ones((GRID, GRID, 3))
-    default = {"elevation": np.zeros((GRID, GRID)), "albedo": 0.3 * one, "reflectance": 0.6 * one, "ground": 200 * one,
-               "cloud": 0 * one}
+    default = {
+        "elevation": np.zeros((GRID, GRID)),
+        "albedo": 0.3 * one,
+        "reflectance": 0.6 * one,
+        "ground": 200 * one,
+        "cloud": 0 * one,
+    }
     return BounceMaps(CELL * HEIGHT, HEIGHT, **{**default, **given})
 
 
@@ -47,15 +52,26 @@ def uneven(seed: int = 1) -> BounceMaps:
 def shown(thread: GLThread) -> Shown:
     """Ground's and cloud's added light as a technique's shader gives it: `shown(bounce, basis, solved, places)`."""
 
-    def ask(bounce: BounceTechnique, basis: BasisTechnique | None, solved: Solved, places: np.ndarray,
-            here: tuple[float, float, float] = (200.0, 0.3, 0.6)) -> tuple[np.ndarray, np.ndarray]:
+    def ask(
+        bounce: BounceTechnique,
+        basis: BasisTechnique | None,
+        solved: Solved,
+        places: np.ndarray,
+        here: tuple[float, float, float] = (200.0, 0.3, 0.6),
+    ) -> tuple[np.ndarray, np.ndarray]:
         return thread.call(_shown, bounce, basis or ObjectBasis(), solved, places, here)
 
     return ask
 
 
-def _shown(gl: GL, bounce: BounceTechnique, basis: BasisTechnique, solved: Solved, places: np.ndarray,
-           here: tuple[float, float, float]) -> tuple[np.ndarray, np.ndarray]:
+def _shown(
+    gl: GL,
+    bounce: BounceTechnique,
+    basis: BasisTechnique,
+    solved: Solved,
+    places: np.ndarray,
+    here: tuple[float, float, float],
+) -> tuple[np.ndarray, np.ndarray]:
     text, pictures, values, macros = [], {}, dict(bounce.numbers(solved.maps.half, solved.maps.centre)), {}
     for slot, technique in (("basis", basis), ("bounce", bounce)):
         text += [uniform_declarations(type(technique), slot), *technique.extra_declarations]
@@ -69,9 +85,20 @@ def _shown(gl: GL, bounce: BounceTechnique, basis: BasisTechnique, solved: Solve
     body = "BounceHere here = BounceHere(vec3({:f}), vec3({:f}), vec3({:f}));".format(*here)
     used = {name for name in values if name in "\n".join(text)}
     try:
-        found = [probe(gl, files, f"{body} result.rgb = bounce_{side}(place, here);", {"place": places}, 3,
-                       uniforms={name: values[name] for name in used}, textures=pictures,
-                       declarations="\n".join(text), defines=macros) for side in ("ground", "cloud")]
+        found = [
+            probe(
+                gl,
+                files,
+                f"{body} result.rgb = bounce_{side}(place, here);",
+                {"place": places},
+                3,
+                uniforms={name: values[name] for name in used},
+                textures=pictures,
+                declarations="\n".join(text),
+                defines=macros,
+            )
+            for side in ("ground", "cloud")
+        ]
     finally:
         for texture in pictures.values():
             texture.release()

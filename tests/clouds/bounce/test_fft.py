@@ -66,11 +66,14 @@ def test_the_shader_reads_what_was_solved(shown: Shown) -> None:
     assert shader_error(shown) < 1e-5
 
 
-@pytest.mark.parametrize(("file", "right", "wrong"), [
-    (GLSL, "textureLod(bounce_ground_map, at * 0.5 + 0.5", "textureLod(bounce_ground_map, at * 0.5 + 0.51"),
-    (GLSL, "textureLod(bounce_cloud_map, at * 0.5 + 0.5", "textureLod(bounce_cloud_map, at.yx * 0.5 + 0.5"),
-    ("clouds/bounce_square.glsl", "return (place - bounce_centre)", "return 1.1 * (place - bounce_centre)"),
-])
+@pytest.mark.parametrize(
+    ("file", "right", "wrong"),
+    [
+        (GLSL, "textureLod(bounce_ground_map, at * 0.5 + 0.5", "textureLod(bounce_ground_map, at * 0.5 + 0.51"),
+        (GLSL, "textureLod(bounce_cloud_map, at * 0.5 + 0.5", "textureLod(bounce_cloud_map, at.yx * 0.5 + 0.5"),
+        ("clouds/bounce_square.glsl", "return (place - bounce_centre)", "return 1.1 * (place - bounce_centre)"),
+    ],
+)
 def test_a_wrong_place_is_found(shown: Shown, spoil: Callable, file: str, right: str, wrong: str) -> None:
     with spoil(file, right, wrong):
         assert shader_error(shown) > 1e-2
@@ -101,8 +104,12 @@ def truth_error(shift: int = 0) -> float:
     square[GRID // 4 : 3 * GRID // 4, GRID // 4 + shift : 3 * GRID // 4 + shift] = 1
     one = np.ones((GRID, GRID))
     exact = by_quadrature(Scene(HALF, np.zeros((GRID + 1, GRID + 1)), 0.3 * one, 0.9 * one, 0 * one, square)).ground
-    found = 0.3 * bounce(flat_exchange(GRID, CELL, points=True), 0 * one[None], square[None], 0.3 * one[None],
-                         0.9 * one[None], 40)[0][0]
+    found = (
+        0.3
+        * bounce(
+            flat_exchange(GRID, CELL, points=True), 0 * one[None], square[None], 0.3 * one[None], 0.9 * one[None], 40
+        )[0][0]
+    )
     inner = (slice(GRID // 4, 3 * GRID // 4),) * 2
     return float(np.sqrt(np.mean((found - exact)[inner] ** 2)) / exact[inner].mean())
 

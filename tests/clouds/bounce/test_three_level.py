@@ -32,8 +32,9 @@ def twin_error(shown: Shown, reading: str = "taps") -> float:
     solved = technique.solve(uneven(), None, {})
     places, (rows, columns) = middles()
     worst = 0.0
-    for found, field in zip(shown(technique, None, solved, places), (solved.added.ground, solved.added.cloud),
-                            strict=True):
+    for found, field in zip(
+        shown(technique, None, solved, places), (solved.added.ground, solved.added.cloud), strict=True
+    ):
         worst = max(worst, float(np.abs(found - field[rows, columns]).max() / field.mean()))
     return worst
 
@@ -43,11 +44,14 @@ def test_the_shader_makes_the_last_half_bounce(shown: Shown, reading: str) -> No
     assert twin_error(shown, reading) < 1e-3
 
 
-@pytest.mark.parametrize(("right", "wrong"), [
-    ("bounce_weights.x * textureLod", "bounce_weights.y * textureLod"),
-    ("vec3(uv, 2.5 / 3.0)", "vec3(uv, 1.5 / 3.0)"),
-    ("bounce_sum(bounce_cloud_map, at)", "bounce_sum(bounce_ground_map, at)"),
-])
+@pytest.mark.parametrize(
+    ("right", "wrong"),
+    [
+        ("bounce_weights.x * textureLod", "bounce_weights.y * textureLod"),
+        ("vec3(uv, 2.5 / 3.0)", "vec3(uv, 1.5 / 3.0)"),
+        ("bounce_sum(bounce_cloud_map, at)", "bounce_sum(bounce_ground_map, at)"),
+    ],
+)
 def test_a_wrong_sum_is_found(shown: Shown, spoil: Callable, right: str, wrong: str) -> None:
     with spoil(GLSL, right, wrong):
         assert twin_error(shown) > 5e-3

@@ -31,8 +31,9 @@ VALLEY = np.where(FAR > 3, 0.7, 0.0) * HEIGHT
 KEPT: dict[str, dict[str, Arrays]] = {}
 
 
-def baked(technique: TransferMatrices, basis: BasisTechnique, ground: Mapping[str, np.ndarray] | None = None,
-          rays: int = 64) -> dict[str, Arrays]:
+def baked(
+    technique: TransferMatrices, basis: BasisTechnique, ground: Mapping[str, np.ndarray] | None = None, rays: int = 64
+) -> dict[str, Arrays]:
     """The bake `transfer`, those of level ground once each."""
     bake = technique.matrix_bake(basis, HEIGHT)
     name = str(bake.arguments)
@@ -71,7 +72,7 @@ def test_a_valley_among_bright_slopes_is_brighter_than_level_ground_says() -> No
     snow = maps(elevation=VALLEY, albedo=np.full((GRID, GRID, 3), 0.8), reflectance=np.zeros((GRID, GRID)))
     relief = technique.solve(snow, basis, baked(technique, basis, {"elevation": VALLEY, "albedo": snow.albedo}))
     level = technique.solve(snow, basis, baked(technique, basis))
-    rim = (np.abs(FAR - 2) < 0.6)
+    rim = np.abs(FAR - 2) < 0.6
     assert relief.added.ground[rim].mean() > level.added.ground[rim].mean() + 2, "slopes light each other"
     assert level.added.ground.max() < 1e-3, "level ground under a black cloud has nothing"
 
@@ -84,8 +85,9 @@ def shader_error(shown: Shown, basis: BasisTechnique, gather: bool = False) -> f
         keep = (rows % 8 == 4) & (columns % 8 == 4)  # half a cell from the blocks' middles
         places, rows, columns = places[keep] - CELL / 2 * HEIGHT, rows[keep], columns[keep]
     worst = 0.0
-    for found, field in zip(shown(technique, basis, solved, places), (solved.added.ground, solved.added.cloud),
-                            strict=True):
+    for found, field in zip(
+        shown(technique, basis, solved, places), (solved.added.ground, solved.added.cloud), strict=True
+    ):
         worst = max(worst, float(np.abs(found - field[rows, columns]).max() / field.mean()))
     return worst
 

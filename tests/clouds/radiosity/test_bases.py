@@ -61,8 +61,11 @@ def test_wavelets_are_orthonormal_and_the_coarse_ones_are_blocks() -> None:
     np.testing.assert_allclose(matrix @ matrix.T, np.eye(1024), atol=1e-12)
     assert matrix[0] == pytest.approx(1 / 32)
     coarse = haar_basis(COARSE)
-    np.testing.assert_allclose(coarse.synthesise(coarse.analyse(FIELD)),
-                               (blocks := object_basis(256)).synthesise(blocks.analyse(FIELD)), atol=1e-12)
+    np.testing.assert_allclose(
+        coarse.synthesise(coarse.analyse(FIELD)),
+        (blocks := object_basis(256)).synthesise(blocks.analyse(FIELD)),
+        atol=1e-12,
+    )
 
 
 def test_the_largest_wavelets_beat_the_coarse_ones_at_an_edge() -> None:
@@ -89,8 +92,10 @@ def test_a_product_is_that_of_the_triple_products() -> None:
     coefficients = matrix @ field
     by_integrals = np.zeros((16, 16))
     for rows, value in found.items():
-        for i, j, k in {(rows[a], rows[b], rows[c]) for a, b, c in
-                        ((0, 1, 2), (0, 2, 1), (1, 0, 2), (1, 2, 0), (2, 0, 1), (2, 1, 0))}:
+        for i, j, k in {
+            (rows[a], rows[b], rows[c])
+            for a, b, c in ((0, 1, 2), (0, 2, 1), (1, 0, 2), (1, 2, 0), (2, 0, 1), (2, 1, 0))
+        }:
             by_integrals[i, j] += coefficients[k] * value
     np.testing.assert_allclose(by_integrals, basis.multiply(field), atol=1e-12)
     wrong = dict(list(found.items())[1:])

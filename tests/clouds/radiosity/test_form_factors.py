@@ -25,9 +25,15 @@ def by_quadrature(x: tuple[float, float], y: tuple[float, float], height: float)
     return float(WEIGHTS @ kernel @ WEIGHTS * (x[1] - x[0]) * (y[1] - y[0]) / 4)
 
 
-@pytest.mark.parametrize(("x", "y", "height"), [
-    ((-1, 1), (-2, 3), 1.0), ((0.5, 2), (1, 1.5), 1.0), ((-3, -1), (2, 4), 2.5), ((100, 300), (-50, 50), 250.0),
-])
+@pytest.mark.parametrize(
+    ("x", "y", "height"),
+    [
+        ((-1, 1), (-2, 3), 1.0),
+        ((0.5, 2), (1, 1.5), 1.0),
+        ((-3, -1), (2, 4), 2.5),
+        ((100, 300), (-50, 50), 250.0),
+    ],
+)
 def test_a_rectangle_is_its_integral(x: tuple[float, float], y: tuple[float, float], height: float) -> None:
     assert float(rectangle(x, y, height)) == pytest.approx(by_quadrature(x, y, height), rel=1e-9)
 
@@ -59,11 +65,14 @@ def test_cells_of_every_size_lose_only_what_lies_beyond() -> None:
     np.testing.assert_allclose(cells(3, 500.0, 1000.0), cells(3, 0.5), rtol=1e-12)
 
 
-@pytest.mark.parametrize(("reading", "factors", "weights"), [
-    ("texels", (0.239, 0.554, 0.951), (0.1346, 0.3931, 0.4238)),
-    ("taps", (0.554, 0.831, 0.987), (0.4618, 0.3588, 0.1668)),
-    ("discs", (0.5, 0.8, 0.985), (0.4, 0.388, 0.197)),
-])
+@pytest.mark.parametrize(
+    ("reading", "factors", "weights"),
+    [
+        ("texels", (0.239, 0.554, 0.951), (0.1346, 0.3931, 0.4238)),
+        ("taps", (0.554, 0.831, 0.987), (0.4618, 0.3588, 0.1668)),
+        ("discs", (0.5, 0.8, 0.985), (0.4, 0.388, 0.197)),
+    ],
+)
 def test_the_three_readings_are_those_of_formulas_a7(reading: str, factors: tuple, weights: tuple) -> None:
     np.testing.assert_allclose(footprints(reading)[1], factors, atol=6e-4)  # type: ignore[arg-type]
     np.testing.assert_allclose(level_weights(reading, spread_loss=False), weights, atol=6e-4)  # type: ignore[arg-type]

@@ -32,9 +32,14 @@ def test_the_kernel_on_a_grid_is_near_the_quadrature() -> None:
     assert errors(technique="fft").max() < 5e-4
 
 
-@pytest.mark.parametrize(("reading", "least", "most"), [
-    ("texels", 0.08, 0.2), ("taps", 0.02, 0.06), ("discs", 0.02, 0.08),
-])
+@pytest.mark.parametrize(
+    ("reading", "least", "most"),
+    [
+        ("texels", 0.08, 0.2),
+        ("taps", 0.02, 0.06),
+        ("discs", 0.02, 0.08),
+    ],
+)
 def test_three_levels_err_as_they_do(reading: str, least: float, most: float) -> None:
     assert least < errors(technique="three_level", reading=reading).max() < most
 
@@ -53,10 +58,22 @@ def test_a_black_ground_and_perfect_mirrors_are_answered() -> None:
     assert any("no sum" in note for note in white.meta["notes"])
 
 
-@pytest.mark.parametrize(("field", "value"), [
-    ("ground_albedo", 1.1), ("cloud_albedo", -0.1), ("distance", 0), ("radii", []), ("radii", [0.1]), ("radii", [65]),
-    ("bounces", 0), ("bounces", 65), ("technique", "magic"), ("reading", "mips"), ("radii", [float("nan")]),
-])
+@pytest.mark.parametrize(
+    ("field", "value"),
+    [
+        ("ground_albedo", 1.1),
+        ("cloud_albedo", -0.1),
+        ("distance", 0),
+        ("radii", []),
+        ("radii", [0.1]),
+        ("radii", [65]),
+        ("bounces", 0),
+        ("bounces", 65),
+        ("technique", "magic"),
+        ("reading", "mips"),
+        ("radii", [float("nan")]),
+    ],
+)
 def test_bad_arguments_are_refused_by_name(field: str, value: object) -> None:
     with pytest.raises(InvalidDocument) as refused:
         door.measure("radiosity", {field: value})

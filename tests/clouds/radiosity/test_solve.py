@@ -48,8 +48,9 @@ def test_few_bounces_leave_their_share_out_and_the_tail_brings_it_back() -> None
 def test_bounces_are_those_of_the_fine_kernel() -> None:
     """Smooth light: blocks of 4H give what cells of half a height do."""
     smooth = 0.5 + 0.3 * np.sin(np.linspace(0, 3, GRID))[:, None] * np.ones(GRID)
-    fine = bounce(flat_exchange(GRID, 0.5), smooth[None], 0 * smooth[None], 0.4 + 0 * smooth[None],
-                  0.8 + 0 * smooth[None], 60)
+    fine = bounce(
+        flat_exchange(GRID, 0.5), smooth[None], 0 * smooth[None], 0.4 + 0 * smooth[None], 0.8 + 0 * smooth[None], 60
+    )
     basis = object_basis(256)
     matrices = flat_transfer(basis, basis)
     flat = Answers.of(basis, basis, 0.4 + 0 * smooth, 0.8 + 0 * smooth)

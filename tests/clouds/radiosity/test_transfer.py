@@ -49,8 +49,9 @@ def test_level_ground_has_one_set_for_both_ways() -> None:
 def test_light_is_reciprocal_between_parts_of_other_size() -> None:
     rings = solid_angle_basis(64)
     found = flat_transfer(OBJECT, rings)
-    np.testing.assert_allclose(found.from_cloud * OBJECT.sizes[:, None], (found.from_ground * rings.sizes[:, None]).T,
-                               atol=1e-4)
+    np.testing.assert_allclose(
+        found.from_cloud * OBJECT.sizes[:, None], (found.from_ground * rings.sizes[:, None]).T, atol=1e-4
+    )
 
 
 def test_wavelets_hold_the_blocks_matrix() -> None:
@@ -58,8 +59,11 @@ def test_wavelets_hold_the_blocks_matrix() -> None:
     wavelets, blocks = haar_basis(np.arange(64)), flat_transfer(OBJECT, OBJECT)
     found = flat_transfer(wavelets, wavelets)
     field = np.random.default_rng(4).random((GRID, GRID))
-    np.testing.assert_allclose(wavelets.synthesise(found.from_cloud @ wavelets.analyse(field)),
-                               OBJECT.synthesise(blocks.from_cloud @ OBJECT.analyse(field)), atol=1e-5)
+    np.testing.assert_allclose(
+        wavelets.synthesise(found.from_cloud @ wavelets.analyse(field)),
+        OBJECT.synthesise(blocks.from_cloud @ OBJECT.analyse(field)),
+        atol=1e-5,
+    )
 
 
 def test_rays_over_level_ground_give_the_closed_form(level: Hits) -> None:
