@@ -99,14 +99,19 @@ void main() {
     float t = texelFetch(traced_ground, ivec2(gl_FragCoord.xy), 0).x;
     float stop = t >= 0.0 ? t : NEVER;
     vec4 legs = layer_legs(path, layer_base, layer_base + max(layer_thickness * layer_highest, 1.0), stop);
-    // Below the base, and above the layer towards the sky, only the stretch behind the lowest point is there.
+    // Below the base, and above the layer towards the sky, only the stretch behind the lowest point is there. Few rays have
+    // both, and the second turn is skipped where none of their neighbours has.
     int leg = CAMERA_SIDE < 0 || legs.y <= 0.0 ? 1 : 0;
-    Stretch near = stretch_of(path, origin, direction, leg, leg == 0 ? legs.xy : legs.zw, stop, pixel_angle);
+    Stretch near = Stretch(0.0, 0.0, 1.0, 1.0, vec2(0.0)), far = near;
+    int turn = 0;
+    do {
+        vec2 nominal = leg == 0 ? legs.xy : legs.zw;
+        Stretch one = stretch_of(path, origin, direction, leg, nominal, stop, pixel_angle);
+        if (turn == 0) near = one; else far = one;
+        turn++;
+        leg++;
+    } while (leg == 1 && legs.w > 0.0);
     first = vec4(near.t, near.depth, near.thickness, near.mu_view);
-    Stretch far = Stretch(0.0, 0.0, 1.0, 1.0, vec2(0.0));
-#if CAMERA_SIDE >= 0
-    far = stretch_of(path, origin, direction, 1, leg == 0 ? legs.zw : vec2(0.0), stop, pixel_angle);
-#endif
     second = vec4(far.t, far.depth, far.thickness, far.mu_view);
     slopes = vec4(near.slope, far.slope);
     overhead = cover_at(place_of(origin + t * direction), max(layer_base, pixel_angle * t)).thickness;
