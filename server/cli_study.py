@@ -27,6 +27,9 @@ KINDS = "kinds"
 FRAMES = 30
 """Timed frames of each technique, from which medians and 95th percentiles are stated."""
 
+PHOTONS = 400_000
+"""Photons of each slab of a stated study."""
+
 PARTS = ("frames", "horizons", "encode", "browser", "sessions", "pictures")
 PICTURE = (640, 360)
 """Width and height of the documentation's pictures."""
@@ -44,6 +47,8 @@ def add(commands: Any) -> None:
     command.add_argument("--slots", metavar="NAME,..", default="", help="(default: shadow, light and geometry)")
     command.add_argument("--combinations", action="store_true", help="of the named combinations of techniques instead")
     command.add_argument("--kinds", action="store_true", help="of shadow instead: each technique in views of one kind")
+    command.add_argument("--slab", action="store_true", help="of light within a plane cloud instead (clouds)")
+    command.add_argument("--photons", type=int, default=PHOTONS, help="of each slab's truth (with --slab)")
     command.add_argument("--moving", type=int, default=64, help="side of pictures whose sun moves (with --kinds), px")
     command.add_argument("--steps", type=int, default=16, help="of the moving sun (with --kinds)")
     command.add_argument("--size", type=int, default=128, help="side of the pictures, px (default %(default)s)")
@@ -115,6 +120,8 @@ def study(given: argparse.Namespace) -> int:
         raise InputError("--frames", "cannot be negative", f"0 for no times, {FRAMES} for stated ones")
     if given.kinds:
         return kinds(given)
+    if given.slab:
+        return slab(given)
     with Session() as session:
         scene = session.describe(given.scene)
         slots = COMBINATION if given.combinations else given.slots
@@ -157,6 +164,26 @@ def kinds(given: argparse.Namespace) -> int:
     if given.docs:
         keep(folder, DOCS / "study" / given.scene / KINDS, (*KEPT, kind_costs.RAW))
     print(f"{folder}: results.jsonl, raw.jsonl, table.md, speed_accuracy.svg .png .csv")
+    return 0
+
+
+def slab(given: argparse.Namespace) -> int:
+    """Hold every scattering technique to photons in a plane cloud, and write raw results, table and charts."""
+    from renderer import slab_report
+
+    if given.scene != "clouds":
+        raise InputError("--slab", f"{given.scene} has no clouds", "clouds")
+    if not 1000 <= given.photons <= 100_000_000:
+        raise InputError("--photons", "too few or too many", "1,000 to 100,000,000")
+    folder = Path(load().study) / given.scene / "slab"
+    tell = Teller("slab")
+    try:
+        print(slab_report.run(folder, given.photons, tell))
+    finally:
+        tell.bar.close()
+    if given.docs:
+        keep(folder, DOCS / "study" / given.scene / "slab", slab_report.FILES)
+    print(f"{folder}: {', '.join(slab_report.FILES)}")
     return 0
 
 

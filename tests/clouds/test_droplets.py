@@ -6,6 +6,7 @@ Values without a file are copied from `b_mie.npz` and `b_mie_summary.json` of th
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -14,10 +15,10 @@ import pytest
 from renderer.clouds import droplets
 from renderer.clouds.bows import bows
 from renderer.clouds.legendre import disc_moments, gauss, moments_of, share_within, values_of
+from renderer.clouds.phase.mie import Mie
 from renderer.clouds.phase_tables import SUN_RADIUS
 
 REFERENCE = Path(__file__).parents[2].parent / "shared" / "reference" / "b_mie.npz"
-NARROW = droplets.Droplets(width=0.01)
 
 # Wavelength: asymmetry, extinction efficiency, share within 5 degrees, P at 0 and 180 degrees and at the fogbow.
 COPIED = {
@@ -31,9 +32,11 @@ RINGS = {650e-9: (38.45, (1.8, 3.85, 5.7)), 550e-9: (38.8, (1.55, 3.25, 4.85)), 
 
 
 @pytest.fixture(scope="module")
-def narrow() -> dict[float, dict[str, np.ndarray]]:
-    return {wavelength: droplets.scattering(NARROW, wavelength, droplets.water_index(wavelength))
-            for wavelength in droplets.BANDS}
+def narrow(baked: Callable[..., dict[str, np.ndarray]]) -> dict[float, dict[str, np.ndarray]]:
+    """What the slot `phase` bakes, by wavelength."""
+    found = baked(Mie(width=0.01, sun_disc=False).phase_bake())
+    return {wavelength: {name: found[name][band] for name in ("moments", "asymmetry", "efficiency")}
+            for band, wavelength in enumerate(droplets.BANDS)}
 
 
 @pytest.mark.parametrize("wavelength", droplets.BANDS)
@@ -43,7 +46,7 @@ def test_equals_an_independent_evaluation(narrow: dict, wavelength: float) -> No
     assert found["efficiency"] == pytest.approx(efficiency, rel=1e-8)
     assert share_within(found["moments"], np.radians(5)) == pytest.approx(share, abs=2e-3)
     ends = values_of(found["moments"], np.array([1.0, -1.0]))
-    assert ends == pytest.approx([forward, backward], rel=1e-7)
+    assert ends == pytest.approx([forward, backward], rel=3e-6)  # moments below 1e-9 are not kept
     rim = values_of(found["moments"], np.cos(np.radians(180 - np.array([38.0, 38.45, 38.8]))))
     assert rim.max() == pytest.approx(bow, rel=2e-2)
 
@@ -70,7 +73,7 @@ def test_whole_phase_functions_equal_the_reference_file() -> None:
 
 
 def test_the_integral_over_the_sphere_is_one(narrow: dict) -> None:
-    nodes, weights = gauss(400)
+    nodes, weights = gauss(200)
     for found in narrow.values():
         values = values_of(found["moments"], nodes)
         assert 2 * np.pi * weights @ values == pytest.approx(1, abs=1e-9)
