@@ -99,8 +99,8 @@ void main() {
     float t = texelFetch(traced_ground, ivec2(gl_FragCoord.xy), 0).x;
     float stop = t >= 0.0 ? t : NEVER;
     vec4 legs = layer_legs(path, layer_base, layer_base + max(layer_thickness * layer_highest, 1.0), stop);
-    // Below the base, and above the layer towards the sky, only the stretch behind the lowest point is there. Few rays have
-    // both, and the second turn is skipped where none of their neighbours has.
+    // Below the base, and above the layer towards the sky, only the stretch behind the lowest point is there. Few rays
+    // have both, and the second turn is skipped where none of their neighbours has.
     int leg = CAMERA_SIDE < 0 || legs.y <= 0.0 ? 1 : 0;
     Stretch near = Stretch(0.0, 0.0, 1.0, 1.0, vec2(0.0)), far = near;
     int turn = 0;
