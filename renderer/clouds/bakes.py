@@ -33,7 +33,7 @@ def globe_bake() -> Bake:
 
 def land_bake(state: CloudsState) -> Bake:
     """Land around the site."""
-    return Bake("land", bake_land, bake_arguments(state.land), version=6, seconds=2)
+    return Bake("land", bake_land, bake_arguments(state.land), version=7, seconds=2)
 
 
 def fields_bake(state: CloudsState) -> Bake:

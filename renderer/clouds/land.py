@@ -32,7 +32,8 @@ def bake_land(arguments: dict[str, Any], inputs: dict[str, Arrays], progress: Ca
     Returns:
         `height` (N, N) float32 [m], row 0 the SOUTHERN edge, nodes `LAND_CELL` apart around the site, 0 at the edge;
         `top` () the highest [m] and `steepness` () the greatest rise over run; `horizon` (A, N / 2, N / 2) float32
-        [rad], the elevation of the land's horizon towards A azimuths clockwise from north, at the means of 2 x 2 nodes.
+        [-], the sine of the elevation of the land's horizon towards A azimuths clockwise from north, at the means of
+        2 x 2 nodes; `open` (N / 2, N / 2) [-], the share of an even sky's light that reaches each.
     """
     progress(0.1, "reading the land")
     height = np.zeros((LAND_NODES, LAND_NODES)) if arguments["kind"] == "flat" else _square(arguments)
@@ -46,7 +47,8 @@ def bake_land(arguments: dict[str, Any], inputs: dict[str, Arrays], progress: Ca
         "top": np.array(float(height.max())),
         "steepness": np.array(_steepness(height)),
         "tops": _tops(height)[::-1].copy(),
-        "horizon": _horizons(height, progress),
+        "horizon": (horizon := _horizons(height, progress)),
+        "open": _open(height, horizon),
     }
 
 
@@ -61,12 +63,35 @@ def horizon_towards(land: Arrays, azimuth: float) -> np.ndarray:
 
 
 def _horizons(height: np.ndarray, progress: Callable[[float, str], None]) -> np.ndarray:
-    coarse = height.reshape(LAND_NODES // 2, 2, LAND_NODES // 2, 2).mean(axis=(1, 3))
+    coarse = _coarse(height)
     azimuths = [2 * math.pi * k / HORIZON_AZIMUTHS for k in range(HORIZON_AZIMUTHS)]
     found = np.empty((HORIZON_AZIMUTHS, *coarse.shape), np.float32)
     for number, slopes in sweeps(coarse, (2 * LAND_CELL, 2 * LAND_CELL), azimuths):
         progress(0.2 + 0.8 * number / HORIZON_AZIMUTHS, "horizon of the land")
         found[number] = np.sin(np.arctan(np.maximum(slopes, -1.0)))[::-1]
+    return found
+
+
+def _open(height: np.ndarray, horizon: np.ndarray) -> np.ndarray:
+    """Share of an even sky's light that a slope catches.
+
+    Dozier and Frew 1990, equation 7b: the mean over azimuths of cos S cos^2 H + sin S cos(azimuth) (pi/2 - H - sin H
+    cos H), with the slope S and the horizon's elevation H.
+    """
+    coarse = _coarse(height)[::-1]
+    north, east = np.gradient(coarse, 2 * LAND_CELL)
+    level = 1.0 / np.sqrt(1.0 + north**2 + east**2)
+    seen = np.zeros_like(level)
+    for number, sine in enumerate(horizon):
+        azimuth = 2 * math.pi * number / len(horizon)
+        h = np.maximum(sine, 0.0)
+        downhill = -(east * math.sin(azimuth) + north * math.cos(azimuth)) * level
+        seen += level * (1 - h**2) + downhill * (math.pi / 2 - np.arcsin(h) - h * np.sqrt(1 - h**2))
+    return np.clip(seen / len(horizon), 0.0, 1.0).astype(np.float32)
+
+
+def _coarse(height: np.ndarray) -> np.ndarray:
+    found: np.ndarray = height.reshape(LAND_NODES // 2, 2, LAND_NODES // 2, 2).mean(axis=(1, 3))
     return found
 
 

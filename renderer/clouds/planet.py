@@ -201,6 +201,12 @@ class Planet(Model):
     snow_albedo: Colour = param(
         (0.82, 0.84, 0.86), label="Snow albedo", help="Reflectance of snow.", source="Oke 1987, table 1.1"
     )
+    rock_albedo: Colour = param(
+        (0.13, 0.12, 0.11), label="Rock albedo", help="Where it is too steep for soil and snow.", source="Oke 1987"
+    )
+    steepest: float = param(
+        50.0, label="Steepest ground", help="Slope above which soil and snow slide off.", unit="deg", ge=0, le=90
+    )
     site_size: float = param(
         60000.0,
         label="Size of the site",

@@ -85,8 +85,10 @@ void main() {
     float t = ground_distance(path, origin, direction, pixel_angle);
     vec3 point = origin + t * direction, up = up_at(point);
     vec2 place = place_of(point);
-    found = t < NEVER ? vec4(t, land_normal(place, up)) : vec4(-1.0);
-    albedo = vec4(ground_albedo(point, up, place, path_altitude(path, t), pixel_angle * t), 1.0);
+    vec3 normal = land_normal(place, up);
+    vec3 bare = ground_albedo(point, up, place, path_altitude(path, t), pixel_angle * t);
+    found = t < NEVER ? vec4(t, normal) : vec4(-1.0);
+    albedo = vec4(steep_albedo(bare, normal, up, place), 1.0);
 }"""
 
 LAYER_BODY = """layout(location = 0) out vec4 first;

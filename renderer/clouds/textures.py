@@ -49,8 +49,8 @@ def world_textures(gl: GL, baked: Mapping[str, Arrays]) -> dict[str, AnyTexture]
 
 
 def horizon_texture(gl: GL, land: Arrays, azimuth: float) -> dict[str, AnyTexture]:
-    """The land's horizon towards the sun's azimuth [rad clockwise from north]."""
-    return {"land_horizon": gl.texture2d(horizon_towards(land, azimuth))}
+    """The land's horizon towards the sun's azimuth [rad clockwise from north], and what it sees of the sky."""
+    return {"land_horizon": gl.texture2d(np.stack([horizon_towards(land, azimuth), land["open"]], axis=-1))}
 
 
 def moment_map(gl: GL, clouds: Any, fields: Arrays, side: float, time: float) -> dict[str, AnyTexture]:

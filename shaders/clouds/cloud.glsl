@@ -4,6 +4,8 @@
 // sends up is the slot `bounce`'s.
 // The sun may stand below the horizon of the layer and light its base, after it has crossed the layer far away (formulas a8).
 
+const float SWELL_SHADE = 0.07;
+
 struct Lit {
     vec3 light; // W m-2 sr-1
     vec3 kept;  // share of what lies behind that comes through unscattered
@@ -37,7 +39,9 @@ Lit stretch_light(Stretch s, vec3 origin, vec3 direction) {
     float cosine = dot(direction, up), mu = dot(up, sun_direction);
     bool from_above = cosine < 0.0;
     vec3 tilted = normalize(up - layer_relief * vec3(s.slope, 0.0));
-    float leaning = mu > 0.0 ? max(dot(tilted, sun_direction), 0.02) : -mu;
+    // Light leaks round a swell, so that none is black and no shadow has an edge: SWELL_SHADE is what reaches one end-on.
+    float facing = dot(tilted, sun_direction);
+    float leaning = mu > 0.0 ? 0.5 * (facing + sqrt(facing * facing + 4.0 * SWELL_SHADE * SWELL_SHADE)) : -mu;
     float mu_sun = clamp(s.thickness / geometry_slant(leaning, layer_base, s.thickness), 1.0e-3, 1.0);
     vec3 level_ray = direction - cosine * up, level_sun = sun_direction - mu * up;
     // Light comes along -sun_direction and leaves along -direction.
@@ -71,10 +75,13 @@ Lit stretch_light_far(Stretch s, vec3 origin, vec3 direction) {
 vec3 ground_light(vec3 point, float altitude, vec3 normal, vec3 albedo, float overhead) {
     float mu = dot(up_at(point), sun_direction);
     vec2 place = place_of(point);
-    float facing = max(dot(normal, sun_direction), 0.0) * land_sees_sun(place, mu);
+    vec2 seen = land_sees(place, mu);
+    float facing = max(dot(normal, sun_direction), 0.0) * seen.x;
+    vec3 open = seen.y / (1.0 - albedo * (1.0 - seen.y)); // the land across throws its share back, again and again
     Shade shade = cloud_shadow(point, altitude, mu, overhead);
-    vec3 light = sun_irradiance * sun_through_air(altitude, mu) * (facing * shade.direct + max(mu, 0.0) * shade.diffuse);
-    light += air_skylight_at(mu) * shade.sky;
-    light += bounce_ground(place, BounceHere(light, albedo, 1.0 - shade.sky));
+    vec3 light = sun_irradiance * sun_through_air(altitude, mu) * (facing * shade.direct + max(mu, 0.0) * open * shade.diffuse);
+    light += air_skylight_at(mu) * open * shade.sky;
+    float under = clamp((layer_base + layer_thickness - altitude) / max(layer_thickness, 1.0), 0.0, 1.0); // summits are not
+    light += under * open * bounce_ground(place, BounceHere(light, albedo, 1.0 - shade.sky));
     return albedo / AIR_PI * light;
 }

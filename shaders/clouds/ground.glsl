@@ -3,8 +3,8 @@
 // What a ray finds of it is traced once for all suns. It does not know caves, overhangs or water that mirrors.
 // land_heights  m above the sphere, nodes land_cell apart round the site    globe_albedo  root of the Earth's albedo, by
 // longitude and latitude    land_tops  highest land within land_reach (m) of each coarse cell
-//   land_horizon  sine of the elevation above which each node of
-// the land sees the sun
+//   land_horizon  r: sine of the elevation above which each node of
+// the land sees the sun, g: share of an even sky's light that reaches it
 
 vec2 land_place(vec2 place) {
     float size = float(textureSize(land_heights, 0).x);
@@ -67,11 +67,19 @@ vec3 ground_albedo(vec3 point, vec3 up, vec2 place, float altitude, float footpr
     return mix(wide * wide, near, site);
 }
 
-// Share of the sun's disc that the land leaves to its nodes; mu: the sun's zenith cosine.
-float land_sees_sun(vec2 place, float mu) {
-    float horizon = textureLod(land_horizon, land_place(place), 0.0).r;
+// Albedo of the land where it is too steep for soil and snow: rock.
+vec3 steep_albedo(vec3 albedo, vec3 normal, vec3 up, vec2 place) {
+    float level = dot(normal, up), holds = cos(planet_steepest);
+    vec2 inside = step(abs(land_place(place) - 0.5), vec2(0.5));
+    return mix(albedo, planet_rock_albedo, smoothstep(holds + 0.06, holds - 0.06, level) * inside.x * inside.y);
+}
+
+// Shares of the sun's disc and of an even sky that the land leaves to its nodes; mu: the sun's zenith cosine.
+vec2 land_sees(vec2 place, float mu) {
+    vec2 found = textureLod(land_horizon, land_place(place), 0.0).rg;
+    float horizon = found.r;
     vec2 inside = step(abs(land_place(place) - 0.5), vec2(0.5));
     // Near the horizon, where it matters, a sine is its angle.
     float t = clamp((mu - horizon) / (2.0 * SUN_RADIUS * sqrt(max(1.0 - mu * mu, 1.0e-4))) + 0.5, 0.0, 1.0);
-    return mix(1.0, t * t * (3.0 - 2.0 * t), inside.x * inside.y);
+    return mix(vec2(1.0), vec2(t * t * (3.0 - 2.0 * t), found.g), inside.x * inside.y);
 }

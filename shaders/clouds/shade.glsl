@@ -5,6 +5,11 @@ struct Shade {
     vec3 sky;     // share of the sky's light
 };
 
+// What of a layer that thick (m) stands above an altitude (m): summits rise into it and through it.
+float above_point(float thickness, float altitude) {
+    return clamp(layer_base + thickness - altitude, 0.0, thickness);
+}
+
 // Apparent cosine in a layer so thick of a sun with zenith cosine mu at its base.
 float shade_slant(float mu, float thickness) {
     return clamp(thickness / geometry_slant(max(mu, 0.0), layer_base, thickness), 1.0e-3, 1.0);

@@ -1,7 +1,8 @@
 // The stretches of a ray inside the layer, as slabs: what no sun changes.
 //
-// Belcour 2009, section 4.2; formulas a8. A stretch is taken where its middle lies: thickness from the map there, apparent
-// cosine from the slot `geometry`. What the camera or the ground cuts off makes the slab thinner, not its slant.
+// Belcour 2009, section 4.2; formulas a8. A stretch is taken where the middle of a layer of mean thickness lies: thickness
+// from the map there, apparent cosine from the slot `geometry`. What the camera or the ground cuts off makes the slab thinner,
+// not its slant.
 
 struct Stretch {
     float t;         // m along the ray, of its middle; 0 where there is none
@@ -14,7 +15,9 @@ struct Stretch {
 // nominal: start and length of the stretch inside the thickest layer, m. end: where the ground ends the ray. footprint: width
 // of the ray at one metre.
 Stretch stretch_of(Path path, vec3 origin, vec3 direction, int leg, vec2 nominal, float end, float footprint) {
-    float t = nominal.x + 0.5 * nominal.y;
+    // The thickest cloud is many times the mean one: the middle of the search is far from that of the cloud.
+    vec2 middle = path_distances(path, layer_base + 0.5 * layer_thickness);
+    float t = clamp(middle.x > middle.y ? -path.along : leg == 0 ? middle.x : middle.y, nominal.x, nominal.x + nominal.y);
     vec3 point = origin + t * direction;
     float cosine = dot(direction, up_at(point));
     Cover cover = cover_at(place_of(point), footprint * t / clamp(abs(cosine), 0.1, 1.0));

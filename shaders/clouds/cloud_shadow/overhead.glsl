@@ -5,5 +5,6 @@
 // from where it belongs.
 
 Shade cloud_shadow(vec3 point, float altitude, float mu, float overhead) {
-    return shade_under(overhead, overhead, shade_slant(mu, max(overhead, 1.0e-3)));
+    float above = above_point(overhead, altitude);
+    return shade_under(above, above, shade_slant(mu, max(above, 1.0e-3)));
 }
