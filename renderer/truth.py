@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import functools
 import hashlib
+import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -81,9 +82,26 @@ def truth_bake(
         "size": [width, height],
         "positions": POSITIONS,
         "options": options,
-        "code": code_of(Path(reference.__path__[0])),
+        "code": code_of_reference(state.scene),
     }
     return Bake("reference", bake_truth, arguments, inputs, seconds=width * height * POSITIONS * SECONDS_PER_RAY)
+
+
+@functools.cache
+def code_of_reference(scene: str) -> str:
+    """Hash of a scene's reference and of all it imports from its folder: another scene's changes leave it alone."""
+    folder = Path(reference.__path__[0])
+    digest, waiting, read = hashlib.sha256(), [scene], set()
+    while waiting:
+        name = waiting.pop()
+        path = folder / f"{name}.py"
+        if name in read or not path.is_file():
+            continue
+        read.add(name)
+        waiting += sorted(re.findall(r"renderer\.reference\.(\w+)", path.read_text()))
+    for name in sorted(read):
+        digest.update(name.encode() + (folder / f"{name}.py").read_bytes())
+    return digest.hexdigest()
 
 
 @functools.cache

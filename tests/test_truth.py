@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from renderer import comparing
+from renderer import comparing, truth
 from renderer.core.baking import bake_key
 from renderer.core.errors import Cancelled, InputError
 from renderer.core.params import validate
@@ -133,6 +133,24 @@ def test_whatever_is_seen_has_a_part_in_it() -> None:
     assert key(plain, 64, 64, "shadow") == key(plain, 64, 64, "share") != key(plain)
     other = state(sky={"kind": "constant"})
     assert key(other, 64, 64, "shadow") == key(other) == key(plain), "the sky's light is exact where none is shared"
+
+
+def test_only_the_code_that_a_reference_reads_is_in_its_key(tmp_path: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    texts = {"forest": "from renderer.reference.forest_a import x", "forest_a": "x = 1", "clouds": "y = 1"}
+    for name, text in texts.items():
+        (tmp_path / f"{name}.py").write_text(text)
+    monkeypatch.setattr(truth.reference, "__path__", [str(tmp_path)])
+
+    def code() -> str:
+        truth.code_of_reference.cache_clear()
+        return truth.code_of_reference("forest")
+
+    before = code()
+    (tmp_path / "clouds.py").write_text("y = 2")
+    assert code() == before, "another scene's"
+    (tmp_path / "forest_a.py").write_text("x = 2")
+    assert code() != before, "what it imports"
+    truth.code_of_reference.cache_clear()
 
 
 def test_progress_reaches_the_end_and_may_stop_it() -> None:
