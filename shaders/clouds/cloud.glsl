@@ -47,13 +47,19 @@ Lit stretch_light(Stretch s, vec3 origin, vec3 direction) {
     // Light comes along -sun_direction and leaves along -direction.
     float turned = dot(level_ray, level_sun) * inversesqrt(max(dot(level_ray, level_ray) * dot(level_sun, level_sun), 1.0e-12));
     Slab slab = Slab(s.depth, mu_sun, s.mu_view, dot(direction, sun_direction), clamp(turned, -1.0, 1.0));
-    vec3 light = sun_at_layer(point, layer_base + s.thickness, mu) * scattering_leaving(slab, sunlit_side(mu, from_above));
+    vec3 beam = sun_at_layer(point, layer_base + s.thickness, mu);
+    vec3 light = beam * scattering_leaving(slab, sunlit_side(mu, from_above));
 
     vec3 reflected = scattering_diffuse_reflectance(s.depth);
     vec3 passed = max(1.0 - reflected - exp(-1.66 * s.depth), vec3(0.0));
     vec3 from_top = air_skylight_at(mu);
-    vec3 below = (sun_irradiance * sun_through_air(0.0, mu) * max(mu, 0.0) + from_top) * (1.0 - reflected);
+    // Where no map of the bounced light reaches: what comes through the layer here falls on the ground here.
+#if CAMERA_SIDE < 0
+    vec3 albedo = planet_albedo;
+#else
     vec3 albedo = ground_albedo(point, up, place_of(point), 0.0, layer_base);
+#endif
+    vec3 below = (beam * max(mu, 0.0) + from_top) * (1.0 - reflected);
     vec3 from_base = bounce_cloud(place_of(point), BounceHere(below, albedo, reflected));
     light += (from_above ? reflected * from_top + passed * from_base : passed * from_top + reflected * from_base) / AIR_PI;
     bool there = s.t > 0.0 && s.depth > 1.0e-6;

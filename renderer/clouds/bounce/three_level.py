@@ -29,7 +29,6 @@ class ThreeLevel(BounceTechnique):
     title: ClassVar[str] = "Three levels"
     caption: ClassVar[str] = "Three mip levels of the plane opposite, by form factors: cheap, rough, level ground only."
     paper: ClassVar[str] = "Bouthors, Neyret & Lefebvre 2006; Belcour 2009, section 5.1"
-    textures: ClassVar[Mapping[str, str]] = {"ground_map": "sampler3D", "cloud_map": "sampler3D"}
     extra_declarations: ClassVar[tuple[str, ...]] = (
         *BounceTechnique.extra_declarations,
         "uniform vec3 bounce_weights; // of the means over H, 2H and 8H",
@@ -72,10 +71,11 @@ class ThreeLevel(BounceTechnique):
         return Solved(maps, added, means=(means[0], means[1]))
 
     def pictures(self, solved: Solved) -> dict[str, np.ndarray]:
-        """`ground_map` and `cloud_map`: means of what the other side sends, one level above the other, (3, N, N, C)."""
+        """`ground_map` and `cloud_map`: means of what the other side sends, one level above the other, (3 N, N, C)."""
         if solved.means is None:
             raise ValueError("another technique solved these maps")
-        return {"ground_map": solved.means[0], "cloud_map": solved.means[1]}
+        ground, cloud = (np.concatenate(list(means)) for means in solved.means)
+        return {"ground_map": ground, "cloud_map": cloud}
 
     def numbers(self, half: float, centre: tuple[float, float] = (0.0, 0.0)) -> dict[str, Any]:
         """The square, and the levels' weights."""

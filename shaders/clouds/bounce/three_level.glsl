@@ -5,11 +5,13 @@
 // last half-bounce alone; the share beyond the widest footprint goes to the coarsest mean.
 // Does not claim: slopes and mountains; all ground is level here.
 
-vec3 bounce_sum(sampler3D levels, vec2 at) {
-    vec2 uv = at * 0.5 + 0.5;
-    return bounce_weights.x * textureLod(levels, vec3(uv, 0.5 / 3.0), 0.0).rgb
-         + bounce_weights.y * textureLod(levels, vec3(uv, 1.5 / 3.0), 0.0).rgb
-         + bounce_weights.z * textureLod(levels, vec3(uv, 2.5 / 3.0), 0.0).rgb;
+// The levels stand above each other; what is read lies off their edges (bounce_within).
+vec3 bounce_sum(sampler2D levels, vec2 at) {
+    vec2 uv = clamp(at, -0.97, 0.97) * 0.5 + 0.5;
+    uv.y /= 3.0;
+    return bounce_weights.x * textureLod(levels, uv, 0.0).rgb
+         + bounce_weights.y * textureLod(levels, uv + vec2(0.0, 1.0 / 3.0), 0.0).rgb
+         + bounce_weights.z * textureLod(levels, uv + vec2(0.0, 2.0 / 3.0), 0.0).rgb;
 }
 
 vec3 bounce_ground(vec2 place, BounceHere here) {
