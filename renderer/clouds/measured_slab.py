@@ -210,7 +210,7 @@ SLAB = Quantity(
         "thin layers",
         "adding_doubling": "R, T 0.2 % relative for tau 0.5 to 128; L_up 0.8 % median, L_down 2 % (4 % of a wide lobe)",
         "delta_eddington": "R, T 0.04 of the beam, 0.1 at mu0 = 0.1; radiance half of itself in the darkest directions",
-        "orders": "R, T 0.007 of the beam for mu0 from 0.4, 0.09 at 0.1; radiance half of itself in the darkest "
+        "orders": "R, T 0.008 of the beam for mu0 from 0.4, 0.09 at 0.1; radiance half of itself in the darkest "
         "directions",
         "thesis_orders": "R, T 0.06 of the beam for mu0 from 0.4, 0.17 at 0.1; order 2 twice too bright: the "
         "technique's own",

@@ -52,7 +52,7 @@ class Mie(PhaseTechnique):
     def phase_bake(self) -> Bake:
         """Moments and tables of the droplets."""
         arguments = {name: value for name, value in bake_arguments(self).items() if name != "kind"}
-        return Bake("phase", bake_droplets, arguments, version=3, seconds=8)
+        return Bake("phase", bake_droplets, arguments, version=3, seconds=2 + 0.08 * self.radius**2)
 
     def kept_textures(self, state: Any, baked: Mapping[str, Arrays]) -> dict[str, np.ndarray]:
         """`table` (2, TABLE, 3): the phase function, and below it its convolution with itself, 1/sr."""

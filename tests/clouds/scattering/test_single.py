@@ -7,6 +7,9 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
+from renderer.clouds.bows import bows
+from renderer.clouds.phase.mie import Mie
+from renderer.clouds.phase_tables import SUN_RADIUS
 from renderer.clouds.scattering.single import Single
 from renderer.clouds.slab import Slab, first_down, first_up, second_down, second_up
 from tests.clouds.scattering import ladder
@@ -66,3 +69,23 @@ def test_a_thick_cloud_is_far_too_dark(baked: Baked) -> None:
     assert (ladder.reflectance_off(Single(), baked)[3, :2] < -0.95).all()
     assert ladder.unbalanced(Single(), baked) > 0.9
     assert not Single.conserves
+
+
+def test_fogbow_and_glory_stand_where_the_droplets_put_them(ask: Ask, baked: Baked) -> None:
+    """In the shader's light of a cloud seen from above, the sun overhead: fogbow within 0.25 degrees, rings within
+    0.1."""
+    droplets = Mie()
+    away = np.radians(np.concatenate([np.arange(0.3, 6, 0.01), np.arange(34, 43, 0.02)]))
+    inputs = {"mu": np.cos(away)}
+    found = ask({"phase": droplets, "scattering": Single()}, "scattering_up(Slab(8.0, 1.0, mu, -mu, 1.0))", inputs)
+    moments = baked(droplets.phase_bake())["moments"]
+    near = away < np.radians(10)
+    for band in range(3):
+        known = bows(moments[band], SUN_RADIUS)
+        bow = away[~near][np.argmax(found[~near, band])]
+        assert np.degrees(abs(bow - known.fogbow)) < 0.25
+        rings, light = away[near], found[near, band]
+        for ring in known.glory[:3]:
+            beside = np.abs(rings - ring) < np.radians(0.35)
+            bright = rings[beside][np.argmax(light[beside])]
+            assert np.degrees(abs(bright - ring)) < 0.1
