@@ -88,7 +88,7 @@ void main() {
     vec3 normal = land_normal(place, up);
     vec3 bare = ground_albedo(point, up, place, path_altitude(path, t), pixel_angle * t);
     found = t < NEVER ? vec4(t, normal) : vec4(-1.0);
-    albedo = vec4(steep_albedo(bare, normal, up, place), 1.0);
+    albedo = vec4(land_albedo(bare, normal, up, place, pixel_angle * t), 1.0);
 }"""
 
 LAYER_BODY = """layout(location = 0) out vec4 first;

@@ -6,6 +6,8 @@
 //   land_horizon  r: sine of the elevation above which each node of
 // the land sees the sun, g: share of an even sky's light that reaches it
 
+#include "lib/patches.glsl"
+
 vec2 land_place(vec2 place) {
     float size = float(textureSize(land_heights, 0).x);
     return (place / land_cell + 0.5 * size) / size;
@@ -67,11 +69,16 @@ vec3 ground_albedo(vec3 point, vec3 up, vec2 place, float altitude, float footpr
     return mix(wide * wide, near, site);
 }
 
-// Albedo of the land where it is too steep for soil and snow: rock.
-vec3 steep_albedo(vec3 albedo, vec3 normal, vec3 up, vec2 place) {
-    float level = dot(normal, up), holds = cos(planet_steepest);
+// What the land adds to that: rock where it is too steep for soil and snow, and patches, lost where a pixel is wider than they.
+vec3 land_albedo(vec3 albedo, vec3 normal, vec3 up, vec2 place, float footprint) {
+    vec2 turned = vec2(0.8 * place.x - 0.6 * place.y, 0.6 * place.x + 0.8 * place.y);
+    vec3 octaves = vec3(patch_octave(place / 610.0, 7u), patch_octave(turned / 170.0, 8u), patch_octave(place / 47.0, 9u));
+    float rough = dot(octaves, vec3(0.45, 0.35, 0.2) * clamp(2.0 - footprint / vec3(305.0, 85.0, 23.0), 0.0, 1.0));
+    float site = 1.0 - smoothstep(0.8, 1.2, length(place) / planet_site_size);
+    float holds = cos(planet_steepest), level = dot(normal, up) + 0.12 * rough;
     vec2 inside = step(abs(land_place(place) - 0.5), vec2(0.5));
-    return mix(albedo, planet_rock_albedo, smoothstep(holds + 0.06, holds - 0.06, level) * inside.x * inside.y);
+    float rock = smoothstep(holds + 0.03, holds - 0.03, level) * inside.x * inside.y;
+    return mix(albedo, planet_rock_albedo, rock) * (1.0 + 0.25 * site * rough * (1.0 - albedo));
 }
 
 // Shares of the sun's disc and of an even sky that the land leaves to its nodes; mu: the sun's zenith cosine.

@@ -3,7 +3,7 @@
 // ground albedo / pi n.s), place.w h in the canopy, h + WOOD in wood, GROUND.
 // The slots' functions are composed in front of this file.
 
-#include "forest/patches.glsl"
+#include "lib/patches.glsl"
 #include "forest/first_look.glsl"
 
 vec3 outgoing(vec4 place, vec4 voxel, float level, vec3 to_eye) {

@@ -10,7 +10,7 @@ import pytest
 from renderer.reference.forest_lookup import patches
 from tests.forest.conftest import Ask, Spoil
 
-FILE = "forest/patches.glsl"
+FILE = "lib/patches.glsl"
 RNG = np.random.default_rng(12)
 Noise = Callable[[np.ndarray, np.ndarray], np.ndarray]
 

@@ -1,4 +1,4 @@
-// Patches of bare ground: value noise of two octaves, smooth and without a period. Perlin 1985 (lattice noise); Ebert et al. 2003,
+// Patches of ground: value noise of two octaves, smooth and without a period. Perlin 1985 (lattice noise); Ebert et al. 2003,
 // "Texturing and Modeling", chapter 2 (value noise, smoothstep between the nodes).
 // Symbols: xy position [m]; the result is in [-1, 1]. Node values come from the tiling's hash (formulas b1), kinds 5 and 6: kinds
 // 0 to 4 lay the tiles. The second octave is turned by the angle of the triangle 3-4-5, so that no direction stands out.
