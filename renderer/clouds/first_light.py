@@ -27,7 +27,7 @@ from renderer.world.sun import angles, direction
 if TYPE_CHECKING:
     from renderer.clouds.state import CloudsState
 
-WITHIN = 4
+WITHIN = 2
 """Places along each side of a cell whose mean it takes."""
 
 HIGHEST = 0.9
@@ -69,8 +69,9 @@ def places(base: float) -> np.ndarray:
 
 def cells(field: np.ndarray) -> np.ndarray:
     """Means over cells of what was sampled, (P, P[, C]) to (GRID, GRID[, C])."""
-    shape = (GRID, WITHIN, GRID, WITHIN, *field.shape[2:])
-    return np.asarray(field.reshape(shape).mean(axis=(1, 3)))
+    # Sums of strided pictures: a mean over two axes at once takes four times as long.
+    rows = sum(field[k::WITHIN] for k in range(WITHIN))
+    return np.asarray(sum(rows[:, k::WITHIN] for k in range(WITHIN))) / WITHIN**2
 
 
 def land_of(land: Arrays, planet: Mapping[str, Any], base: float, azimuth: float) -> Land:
