@@ -206,8 +206,8 @@ SLAB = Quantity(
     source="van de Hulst 1963; Wiscombe 1977; Nakajima and Tanaka 1988; Joseph, Wiscombe and Weinman 1976; Blinn 1982; "
     "Belcour 2009",
     error={
-        "doubling": "R, T 1e-4 relative; L_up 0.2 % median, L_down 0.5 % median, 25 % at worst within the aureole of "
-        "thin layers",
+        "doubling": "R, T 1e-4 relative; L_up 0.1 % median, 3.5 % at worst (glory); L_down 0.1 % median, 6 % at worst "
+                    "(aureole of thin layers)",
         "adding_doubling": "R, T 0.2 % relative for tau 0.5 to 128; L_up 0.8 % median, L_down 2 % (4 % of a wide lobe)",
         "delta_eddington": "R, T 0.04 of the beam, 0.1 at mu0 = 0.1; radiance half of itself in the darkest directions",
         "orders": "R, T 0.008 of the beam for mu0 from 0.4, 0.09 at 0.1; radiance half of itself in the darkest "

@@ -12,8 +12,7 @@ from typing import Any
 import numpy as np
 
 from renderer.clouds.doubling import Streams
-from renderer.clouds.legendre import values_of
-from renderer.clouds.phase_tables import TABLE, table_cosines
+from renderer.clouds.peak import factors
 from renderer.clouds.slab_axes import cosines, depths
 from renderer.core.technique import Arrays
 
@@ -24,15 +23,6 @@ NODES = 16
 
 ORDERS = 9
 """Azimuthal orders of the light of orders 2 and more."""
-
-GLOW_PATHS = 21
-"""Optical paths in the table of the glow: even steps of the logarithm between GLOW_LEAST and GLOW_MOST."""
-
-GLOW_LEAST, GLOW_MOST = -4.0, 6.0
-"""Powers of two."""
-
-GLOW_ANGLES = TABLE // 2
-"""Angles of that table: those of the phase function's in the forward hemisphere."""
 
 
 def second_share(depth: np.ndarray, view: np.ndarray, sun: np.ndarray) -> np.ndarray:
@@ -47,11 +37,6 @@ def down_share(depth: np.ndarray, view: np.ndarray, sun: np.ndarray) -> np.ndarr
     return second_share(depth, view, sun) / (1 + 0.1 * depth)
 
 
-def glow_paths() -> np.ndarray:
-    """Optical paths of the table of the glow."""
-    return 2.0 ** np.linspace(GLOW_LEAST, GLOW_MOST, GLOW_PATHS)
-
-
 def bake_doubling(arguments: dict[str, Any], inputs: dict[str, Arrays], progress: Progress) -> Arrays:
     """Bake what `adding_doubling` reads.
 
@@ -60,7 +45,7 @@ def bake_doubling(arguments: dict[str, Any], inputs: dict[str, Arrays], progress
         other, over `second_share` and `down_share`, by optical depth, cosine of the sun, cosine of the view. `low`,
         `high` (2, T, K, K, 4): orders 1 to 4 and 5 to 8, mean of the bands. `flux` (T, K, 3): hemispherical reflectance
         over that of the simplest layer, `plain_reflectance`; `even` (T, 3): the same for even light. `peak` (3,).
-        `glow` (GLOW_PATHS, GLOW_ANGLES, 3): see `_glow`.
+        `glow` (GLOW_PATHS, TABLE, 3): see `peak.factors`.
     """
     moments = inputs["phase"]["moments"]
     mu, tau = cosines(), depths()
@@ -84,7 +69,7 @@ def bake_doubling(arguments: dict[str, Any], inputs: dict[str, Arrays], progress
     even = np.stack([one["even"] for one in found], axis=-1)
     arrays["even"] = even / even_plain(tau)[:, None]
     arrays["peak"] = np.array([one.peak for one in streams])
-    arrays["glow"] = _glow(inputs["phase"], arrays["peak"])
+    arrays["glow"] = factors(inputs["phase"], arrays["peak"], 2 * NODES)
     return {name: np.asarray(array, np.float32) for name, array in arrays.items()}
 
 
@@ -116,37 +101,3 @@ def _band(streams: Streams, tau: np.ndarray) -> dict[str, np.ndarray]:
         # Even light of radiance 1 / pi: the mean over its directions, weighted by their cosine.
         "even": np.array([2 * weight @ layer.reflection[0][node, node] @ streams.weight[node] for layer in layers]),
     }
-
-
-def _glow(phase: Arrays, peak: np.ndarray) -> np.ndarray:
-    """How light around the sun differs from order 1 of the scaled layer with the true phase function, as a factor.
-
-    The peak p is what delta-M takes out: moments f up to its cut, those of the phase function beyond. Along a path of
-    optical depth t, order 1 is P t e^(-t); what the peak leaves of P goes through the scaled layer, (P - f p) t
-    (e^(-(1 - f) t) - e^-t); and n deflections by the peak alone, two and more, are Poisson's: the spectrum e^-t (e^(f
-    p_l t) - 1 - f p_l t) (formulas a3). Their sum is divided by P t e^(-(1 - f) t). Behind the sun's hemisphere it is
-    1.
-
-    Returns:
-        (GLOW_PATHS, GLOW_ANGLES, 3).
-    """
-    moments = phase["moments"]
-    kept = np.where(np.arange(moments.shape[1]) < 2 * NODES, peak[:, None], moments)
-    cosines_ahead = table_cosines()[:GLOW_ANGLES]
-    factor = np.ones((GLOW_PATHS, GLOW_ANGLES, 3))
-    for band, (share, f) in enumerate(zip(kept, peak)):
-        once = np.maximum(values_of(moments[band] * phase["disc"], cosines_ahead), 1e-9)
-        rest = values_of((moments[band] - share) * phase["disc"], cosines_ahead)
-        for row, t in enumerate(glow_paths()):
-            # Over t e^(-(1 - f) t) all three terms are of moderate size.
-            alone = values_of(np.exp(-f * t) / t * twice_or_more(share * t) * phase["disc"], cosines_ahead)
-            factor[row, :, band] = np.exp(-f * t) + (rest * -np.expm1(-f * t) + alone) / once
-    return np.maximum(factor, 0)
-
-
-def twice_or_more(x: np.ndarray | float) -> np.ndarray:
-    """e^x - 1 - x, exact for small x."""
-    x = np.asarray(x, np.float64)
-    small = np.where(np.abs(x) < 0.1, x, 0.0)
-    series = small**2 / 2 * (1 + small / 3 * (1 + small / 4 * (1 + small / 5 * (1 + small / 6 * (1 + small / 7)))))
-    return np.where(np.abs(x) < 0.1, series, np.expm1(np.minimum(x, 600)) - x)

@@ -1,7 +1,7 @@
 """The light of plane layers at chosen directions, by doubling with no table between: what `measure slab` calls
 `doubling`.
 
-Orders 1 and the forward peak's are exact in the angle, as the technique `adding_doubling` has them (`slab_tables`);
+Orders 1 and the forward peak's are exact in the angle, as the technique `adding_doubling` has them (`peak`);
 all that is left is followed in as many azimuthal orders as there are moments after delta-M.
 """
 
@@ -13,8 +13,8 @@ import numpy as np
 
 from renderer.clouds.doubling import Streams
 from renderer.clouds.legendre import values_of
+from renderer.clouds.peak import escaping, parts, transmitted_spectrum
 from renderer.clouds.slab import Slab, first_down, first_up
-from renderer.clouds.slab_tables import twice_or_more
 
 Progress = Callable[[float, str], None]
 
@@ -49,7 +49,6 @@ def solve(
     streams = Streams(moments, np.concatenate([suns, views]), nodes, 2 * nodes, albedo)
     orders = np.arange(2 * nodes)[:, None]
     turns = np.cos(orders * azimuths) * np.where(orders == 0, 1, 2) / (2 * np.pi)
-    kept = np.where(np.arange(len(moments)) < 2 * nodes, streams.peak, moments)
     shape = (len(depths), len(suns))
     found = {"R": np.empty(shape), "T_total": np.empty(shape)}
     found |= {side: np.empty((*shape, len(views), len(azimuths))) for side in ("L_up", "L_down")}
@@ -68,25 +67,33 @@ def solve(
         for up, name in ((True, "L_up"), (False, "L_down")):
             more = (layer.reflection - once.reflection if up else layer.transmission - once.transmission)[chosen]
             slab = Slab.between(depth, suns[:, None, None], views[:, None], azimuths, up)
-            first = _first(moments, kept, streams, albedo, slab, up)
+            first = _first(moments, streams, 2 * nodes, albedo, slab, up)
             found[name][row] = first + np.einsum("mvs,ma->sva", more, turns)
     return found
 
 
-def _first(moments: np.ndarray, kept: np.ndarray, streams: Streams, albedo: float, slab: Slab, up: bool) -> np.ndarray:
-    """Order 1 of the scaled layer with the true phase function; below, with what the forward peak makes of it
-    (formulas a3)."""
-    value = albedo * values_of(moments, slab.cosine)
-    if up:
-        return value * first_up(slab, streams.kept) / streams.kept
-    once = first_down(slab)
-    rest = albedo * values_of(moments - kept, slab.cosine) * (first_down(slab, streams.kept) / streams.kept - once)
-    glow = np.zeros_like(slab.cosine)
+def _first(moments: np.ndarray, streams: Streams, cut: int, albedo: float, slab: Slab, up: bool) -> np.ndarray:
+    """Order 1 of the scaled layer with the true phase function, and what the forward peak makes of it (`peak`)."""
+    f = streams.peak * albedo
+    found = albedo * values_of(moments, slab.cosine)
+    found *= (first_up if up else first_down)(slab, streams.kept) / streams.kept
+    if f < 1e-6:
+        return found
+    early = np.arange(len(moments)) < cut
+    forward, behind = parts(moments)
     for place in np.ndindex(slab.cosine.shape[:2]):
-        # Along the mean of both paths, which are alike where the glow is.
-        path = float(slab.optical_depth[place][0] / np.sqrt(slab.mu_sun[place][0] * slab.mu_view[place][0]))
-        if streams.peak > 0:
+        depth, sun, view = (float(array[place][0]) for array in (slab.optical_depth, slab.mu_sun, slab.mu_view))
+        turned = (slab.cosine[place] <= 0) == up
+        if up:
+            path = depth * (1 / sun + 1 / view)
+            spectrum = albedo * behind * escaping(np.where(early, f, albedo * forward), path) * sun / (sun + view)
+            found[place][turned] = values_of(spectrum, slab.cosine[place][turned])
+        else:
+            # Along the mean of both paths, which are alike where the glow is.
+            path = depth / np.sqrt(sun * view)
+            scale = found[place] / np.maximum(albedo * values_of(moments, slab.cosine[place]), 1e-12)
             with np.errstate(under="ignore"):
-                spectrum = np.exp(-min(path, 700.0)) * twice_or_more(albedo * kept * path)
-            glow[place] = values_of(spectrum, slab.cosine[place])
-    return np.maximum(value * once + rest + glow, 0)
+                kept = np.where(early, f, albedo * moments)
+                spectrum = transmitted_spectrum(albedo * moments, kept, f, min(path, 300.0))
+            found[place][turned] = (values_of(spectrum, slab.cosine[place]) * scale)[turned]
+    return np.maximum(found, 0)

@@ -7,6 +7,7 @@ from typing import Any, ClassVar, Literal
 
 import numpy as np
 
+from renderer.clouds import peak
 from renderer.clouds import slab_axes as axes
 from renderer.clouds import slab_tables as tables
 from renderer.clouds.phase_tables import look_up, table_place
@@ -40,7 +41,7 @@ class AddingDoubling(ScatteringTechnique):
 
     def bakes(self, state: Any) -> list[Bake]:
         """The tables of the phase function."""
-        return [Bake("doubling", tables.bake_doubling, {}, (state.phase.phase_bake(),), version=2, seconds=1)]
+        return [Bake("doubling", tables.bake_doubling, {}, (state.phase.phase_bake(),), version=3, seconds=1)]
 
     def kept_textures(self, state: Any, baked: Mapping[str, Arrays]) -> dict[str, np.ndarray]:
         """Volumes by optical depth (the two sides one above the other), sun and view; pictures by optical depth and
@@ -70,13 +71,14 @@ class DoublingModel:
         """See `SlabModel.up`."""
         scaled = np.stack([first_up(slab, share) / share for share in 1 - self._peak], axis=-1)
         share = tables.second_share(slab.optical_depth, slab.mu_view, slab.mu_sun)
-        return self._more(slab, 0) * share[..., None] + look_up(self._phase["value"], slab.cosine) * scaled
+        blurred = look_up(self._phase["value"], slab.cosine) * scaled * self._factor(slab, up=True)
+        return self._more(slab, 0) * share[..., None] + blurred
 
     def down(self, slab: Slab) -> np.ndarray:
         """See `SlabModel.down`."""
         scaled = np.stack([first_down(slab, share) / share for share in 1 - self._peak], axis=-1)
         share = tables.down_share(slab.optical_depth, slab.mu_view, slab.mu_sun)
-        around = look_up(self._phase["value"], slab.cosine) * scaled * self._glow(slab)
+        around = look_up(self._phase["value"], slab.cosine) * scaled * self._factor(slab, up=False)
         return self._more(slab, 1) * share[..., None] + around
 
     def reflectance(self, depth: np.ndarray, mu: np.ndarray) -> np.ndarray:
@@ -104,11 +106,14 @@ class DoublingModel:
         turned = (low * turns[..., :4]).sum(axis=-1) + (high * turns[..., 4:]).sum(axis=-1)
         return np.maximum(axes.look_up(self._tables["mean"][side], *places) + turned[..., None], 0)
 
-    def _glow(self, slab: Slab) -> np.ndarray:
-        """What the forward peak makes of order 1 around the sun, a factor."""
-        path = slab.optical_depth / np.sqrt(slab.mu_sun * slab.mu_view)
-        step = (tables.GLOW_PATHS - 1) / (tables.GLOW_MOST - tables.GLOW_LEAST)
-        row = np.clip((np.log2(np.maximum(path, 1e-6)) - tables.GLOW_LEAST) * step, 0, tables.GLOW_PATHS - 1)
-        column = np.minimum(table_place(slab.cosine), tables.GLOW_ANGLES - 1)
-        shape = axes.look_up(self._tables["glow"], row, column)
-        return np.where(slab.cosine[..., None] > 0, shape, 1.0)
+    def _factor(self, slab: Slab, up: bool) -> np.ndarray:
+        """What the forward peak makes of order 1: a glow around the sun, or a blur behind."""
+        if up:
+            path = slab.optical_depth * (1 / slab.mu_sun + 1 / slab.mu_view)
+        else:
+            path = slab.optical_depth / np.sqrt(slab.mu_sun * slab.mu_view)
+        step = (peak.PATHS - 1) / (peak.MOST - peak.LEAST)
+        row = np.clip((np.log2(np.maximum(path, 1e-6)) - peak.LEAST) * step, 0, peak.PATHS - 1)
+        factor = axes.look_up(self._tables["glow"], row, table_place(slab.cosine))
+        behind = slab.cosine <= 0
+        return np.where((behind == up)[..., None], factor, 1.0)

@@ -2,9 +2,10 @@
 // Nakajima & Tanaka 1988; glow of the forward peak: formulas a3.
 // Symbols: f peak scattering_peak [-], taken out of the phase function P [1/sr]; tau' = (1 - f) tau; the azimuthal orders of light
 // of two orders and more are stored over a share that carries thin layers and grazing directions.
-// Deviations: order 1 of the scaled layer has the true P; around the sun, on the other side, a factor makes of it order 1 of the true
-// layer, what the peak leaves of P in the scaled one, and the glow of two deflections and more by the peak.
-// Does not claim: glory and fogbow blurred by the peak; the glow's skewness at grazing view.
+// Deviations: order 1 of the scaled layer has the true P; a factor makes of it, around the sun on the other side, order 1 of the true
+// layer, what the peak leaves of P in the scaled one, and the glow of two deflections and more; behind, on the sunlit side, it
+// blurs fogbow and glory by the peak.
+// Does not claim: the glow's skewness at grazing view; azimuthal orders beyond 8 of light of two orders and more.
 
 #include "clouds/angles.glsl"
 #include "clouds/slab.glsl"
@@ -12,7 +13,7 @@
 const float SCATTERING_GLOW_LEAST = -4.0;
 const float SCATTERING_GLOW_STEP = 2.0; // entries for each doubling of the path
 const float SCATTERING_GLOW_PATHS = 21.0;
-const float SCATTERING_ENTRIES = 2048.0; // angles from 0 to 180 degrees; the glow has the first half of them
+const float SCATTERING_ENTRIES = 2048.0; // angles from 0 to 180 degrees
 const float SCATTERING_FORWARD = 0.9961946980917455; // cosine of 5 degrees
 
 // How light of two orders and more goes with a thin layer and with grazing directions.
@@ -49,14 +50,13 @@ vec3 scattering_diffuse_reflectance(float tau) {
     return textureLod(scattering_even, vec2(slab_place(tau, 1.0).y, 0.5), 0.0).rgb * (tau / (tau + 7.0));
 }
 
-// What the forward peak makes of order 1 around the sun.
-vec3 scattering_glow_factor(Slab s) {
-    float path = s.optical_depth * inversesqrt(s.mu_sun * s.mu_view);
+// What the forward peak makes of order 1: a glow around the sun, by the mean path, or a blur behind, by the path in and out.
+vec3 scattering_peak_factor(Slab s, bool up) {
+    float path = s.optical_depth * (up ? 1.0 / s.mu_sun + 1.0 / s.mu_view : inversesqrt(s.mu_sun * s.mu_view));
     float row = clamp((log2(max(path, 1e-6)) - SCATTERING_GLOW_LEAST) * SCATTERING_GLOW_STEP, 0.0, SCATTERING_GLOW_PATHS - 1.0);
-    float columns = 0.5 * SCATTERING_ENTRIES;
-    float column = min(angle_place(s.cosine) * (SCATTERING_ENTRIES - 1.0), columns - 1.0);
-    vec2 place = vec2((column + 0.5) / columns, (row + 0.5) / SCATTERING_GLOW_PATHS);
-    return s.cosine > 0.0 ? textureLod(scattering_glow, place, 0.0).rgb : vec3(1.0);
+    float column = angle_place(s.cosine) * (SCATTERING_ENTRIES - 1.0);
+    vec2 place = vec2((column + 0.5) / SCATTERING_ENTRIES, (row + 0.5) / SCATTERING_GLOW_PATHS);
+    return (s.cosine <= 0.0) == up ? textureLod(scattering_glow, place, 0.0).rgb : vec3(1.0);
 }
 
 // Light that leaves on the sunlit side (up) or on the other, with one look at each table for both.
@@ -72,7 +72,7 @@ vec3 scattering_leaving(Slab given, bool up) {
     float share = scattering_share(s) / (up ? 1.0 : 1.0 + 0.1 * s.optical_depth);
     vec3 more = max(textureLod(scattering_mean, place, 0.0).rgb + turned, 0.0) * share;
     vec3 P = phase_value(s.cosine);
-    vec3 bright = P * scaled * (up ? vec3(1.0) : scattering_glow_factor(s));
+    vec3 bright = P * scaled * scattering_peak_factor(s, up);
     if (scattering_order == scattering_order_all) return more + bright;
     vec3 single = P * (up ? slab_first_up(s, vec3(1.0)) : slab_first_down(s, vec3(1.0)));
     vec3 forward = !up && s.cosine > SCATTERING_FORWARD ? bright - single : vec3(0.0);
