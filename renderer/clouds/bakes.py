@@ -38,7 +38,7 @@ def land_bake(state: CloudsState) -> Bake:
 
 def fields_bake(state: CloudsState) -> Bake:
     """What the cloud map is made of."""
-    return Bake("fields", bake_fields, bake_arguments(state.clouds), version=5, seconds=3)
+    return Bake("fields", bake_fields, bake_arguments(state.clouds), version=7, seconds=3)
 
 
 def bakes(state: CloudsState) -> list[Bake]:

@@ -18,7 +18,8 @@ import numpy as np
 from scipy.spatial import cKDTree
 from scipy.special import erfinv
 
-from renderer.clouds.world_scale import CLOUD_NODES, SYSTEMS_SIDE
+from renderer.clouds import weather
+from renderer.clouds.world_scale import CLOUD_NODES
 from renderer.core.cache import AssetStore
 from renderer.core.errors import InputError
 from renderer.core.technique import Arrays
@@ -48,8 +49,8 @@ def bake_fields(arguments: dict[str, Any], inputs: dict[str, Arrays], progress: 
 
     Returns:
         `fields` (2, N, N) float32 of mean 0 and variance 1, both periodic, or (1, N, N) for a user's map;
-        `systems` (N, N) float32 in [0, 1], the cover of the weather systems, periodic, 1 at its corner; `reach` (),
-        the greatest value of a user's map.
+        `systems` (M, 2 M) float32 in [0, 1], the cover of the weather systems by latitude and longitude, or (4, 4)
+        ones; `reach` (), the greatest value of a user's map.
     """
     kind = arguments["kind"]
     progress(0.1, "drawing the clouds")
@@ -62,7 +63,7 @@ def bake_fields(arguments: dict[str, Any], inputs: dict[str, Arrays], progress: 
     rng = np.random.Generator(np.random.PCG64(arguments["seed"]))
     fields = np.stack([_field(rng, arguments) for _ in range(2)])
     progress(0.7, "drawing the weather systems")
-    systems = _systems(rng).astype(np.float32) if arguments["systems"] else everywhere
+    systems = weather.systems(rng) if arguments["systems"] else everywhere
     return {"fields": fields.astype(np.float32), "systems": systems, "reach": np.array(0.0)}
 
 
@@ -112,28 +113,6 @@ def _normal(field: np.ndarray) -> np.ndarray:
     """The field with its values spread as a normal distribution's, in their order."""
     ranks = np.argsort(np.argsort(field, axis=None)).reshape(field.shape)
     return math.sqrt(2.0) * erfinv(2.0 * (ranks + 0.5) / field.size - 1.0)
-
-
-def _systems(rng: np.random.Generator) -> np.ndarray:
-    """Cover of the weather systems, (N, N) in [0, 1]: over half of the Earth, closed around the site."""
-    # Fronts are drawn out by winds: noise warped by other noise, over 2,000 km and less.
-    texels = CLOUD_NODES
-    longest = texels * 2.0e6 / SYSTEMS_SIDE
-    field = _power_noise(rng, texels, 3.0, longest)
-    bend = [_power_noise(rng, texels, 4.0, longest) for _ in range(2)]
-    reach = 0.12 * texels
-    rows, columns = np.meshgrid(np.arange(texels), np.arange(texels), indexing="ij")
-    row = np.rint(rows + reach * bend[0]).astype(int) % texels
-    column = np.rint(columns + 0.5 * reach * bend[1]).astype(int) % texels
-    field = field[row, column]
-    best = np.unravel_index(np.argmax(_smooth(field, 24)), field.shape)
-    field = np.roll(field, (-best[0], -best[1]), axis=(0, 1))
-    return np.clip(0.5 + 0.8 * (field - 0.15), 0.0, 1.0)
-
-
-def _smooth(field: np.ndarray, texels: float) -> np.ndarray:
-    k2 = np.fft.fftfreq(field.shape[0])[:, None] ** 2 + np.fft.rfftfreq(field.shape[1])[None, :] ** 2
-    return np.fft.irfft2(np.fft.rfft2(field) * np.exp(-2.0 * (math.pi * texels) ** 2 * k2), field.shape)
 
 
 def thickness_map(clouds: Any, baked: Mapping[str, np.ndarray], time: float) -> np.ndarray:

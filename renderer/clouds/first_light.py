@@ -19,7 +19,8 @@ from renderer.clouds.cloud_map import thickness_map
 from renderer.clouds.land import horizon_towards
 from renderer.clouds.radiosity.bases import GRID
 from renderer.clouds.radiosity.maps import BounceMaps, square_cells
-from renderer.clouds.world_scale import AIR_TOP, LAND_CELL, SYSTEMS_SIDE
+from renderer.clouds.weather import round_site
+from renderer.clouds.world_scale import AIR_TOP, LAND_CELL
 from renderer.core.technique import Arrays
 from renderer.world.sky import SOLAR_CONSTANT, sky_for
 from renderer.world.sun import angles, direction
@@ -115,9 +116,9 @@ def depth_at(state: CloudsState, fields: Arrays, shift: tuple[float, float]) -> 
     found = np.ones((len(y), len(x))) if clouds.kind == "uniform" else found
     if clouds.kind == "asset" and not clouds.repeats:
         found *= ((v >= 0) & (v < texels))[:, None] & ((u >= 0) & (u < texels))[None, :]
-    systems = np.asarray(fields["systems"], np.float64)
-    at = [(w / SYSTEMS_SIDE) * len(systems) - 0.5 for w in (y, x)]
-    found *= map_coordinates(systems, np.meshgrid(*at, indexing="ij"), order=1, mode="grid-wrap")
+    systems = round_site(fields["systems"], state.planet.latitude, state.planet.longitude, state.planet.radius)
+    at = [(0.5 + w / (4 * state.planet.radius)) * len(systems) - 0.5 for w in (along + shift[1], along + shift[0])]
+    found *= map_coordinates(systems, np.meshgrid(*at, indexing="ij"), order=1, mode="nearest")
     return layer.extinction * layer.thickness * found
 
 

@@ -21,8 +21,8 @@ from renderer.clouds.program import (
     layer_source,
     shade_source,
 )
-from renderer.clouds.textures import horizon_texture, moment_map, technique_textures, world_textures
-from renderer.clouds.world_scale import AIR_TOP, LAND_CELL, LAND_NODES, SYSTEMS_SIDE
+from renderer.clouds.textures import horizon_texture, moment_map, technique_textures, weather_texture, world_textures
+from renderer.clouds.world_scale import AIR_TOP, LAND_CELL, LAND_NODES
 from renderer.core.params import uniforms
 from renderer.core.technique import Arrays, BakedArrays
 from renderer.gl.context import GL
@@ -170,6 +170,11 @@ class CloudsRenderer:
     def _textures(self, state: CloudsState, baked: Baked, arrays: Mapping[str, Arrays]) -> dict[str, AnyTexture]:
         world = tuple(baked[name].key for name in ("air", "sky", "globe", "land", "fields"))
         held = dict(self._baked.get(world, lambda: world_textures(self._gl, arrays)))
+        place = (state.planet.latitude, state.planet.longitude, state.planet.radius)
+        held |= self._baked.get(
+            ("weather", baked["fields"].key, place),
+            lambda: weather_texture(self._gl, arrays["fields"], state.planet),
+        )
         azimuth = angles(state.sun)[0]
         held |= self._moment.get(
             ("horizon", baked["land"].key, azimuth), lambda: horizon_texture(self._gl, arrays["land"], azimuth)
@@ -209,7 +214,6 @@ def world_values(state: CloudsState, baked: Mapping[str, Arrays]) -> dict[str, A
         "cloud_drift": drift(state),
         "cloud_side": cloud_side(state),
         "cloud_repeats": 0.0 if state.clouds.kind == "asset" and not state.clouds.repeats else 1.0,
-        "cloud_systems_side": SYSTEMS_SIDE,
         "sun_direction": direction(state.sun),
         "sun_irradiance": (SOLAR_CONSTANT,) * 3,
     }

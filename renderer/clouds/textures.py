@@ -10,6 +10,7 @@ import numpy as np
 from renderer.clouds.air import skylight
 from renderer.clouds.cloud_map import thickness_map
 from renderer.clouds.land import horizon_towards
+from renderer.clouds.weather import round_site
 from renderer.core.technique import Arrays
 from renderer.gl.context import GL
 from renderer.gl.program import AnyTexture
@@ -44,8 +45,13 @@ def world_textures(gl: GL, baked: Mapping[str, Arrays]) -> dict[str, AnyTexture]
         "globe_albedo": mipmapped(gl, baked["globe"]["albedo"], True),
         "land_tops": gl.texture2d(baked["land"]["tops"], "nearest"),
         "land_heights": gl.texture2d(baked["land"]["height"]),
-        "cloud_systems": mipmapped(gl, baked["fields"]["systems"], True),
     }
+
+
+def weather_texture(gl: GL, fields: Arrays, planet: Any) -> dict[str, AnyTexture]:
+    """The weather systems round the site."""
+    found = round_site(fields["systems"], planet.latitude, planet.longitude, planet.radius)
+    return {"cloud_systems": mipmapped(gl, found, False)}
 
 
 def horizon_texture(gl: GL, land: Arrays, azimuth: float) -> dict[str, AnyTexture]:

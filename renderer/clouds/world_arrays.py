@@ -9,7 +9,8 @@ import numpy as np
 
 from renderer.clouds.cloud_map import thickness_map
 from renderer.clouds.renderer import cloud_side, drift, globe_axes
-from renderer.clouds.world_scale import LAND_CELL, SYSTEMS_SIDE
+from renderer.clouds.weather import round_site
+from renderer.clouds.world_scale import LAND_CELL
 from renderer.core.technique import Arrays
 from renderer.world.sky import SOLAR_CONSTANT
 from renderer.world.sun import direction
@@ -35,10 +36,11 @@ def world_arrays(state: CloudsState, baked: Mapping[str, Arrays]) -> dict[str, A
         [m] of the land, row 0 at the south, nodes `land_cell` [m] apart round the site. Layer: `base`, `thickness`
         [m], `extinction` [1/m]; `cloud_map` (N, N), thickness as a share of the layer's, row 0 at the south, cut at
         zero once it is read, over a square of `cloud_side` [m] round the site, which `cloud_repeats` or not and has
-        been carried by `cloud_drift` (2,) [m]; `systems` (N, N), a further share, over `systems_side` [m], its corner
-        at the site, repeated. Maps are read at the stereographic place of a point, bilinearly between texels. Light:
-        `sun` (3,), `sun_irradiance` above the air [W m-2], `haze` of the air, and `wide_albedo`, the ground that its
-        multiply scattered light is computed over. `background`, zero: the reference draws the sky itself.
+        been carried by `cloud_drift` (2,) [m]; `systems` (M, M), a further share, in Lambert's equal-area projection of
+        the whole Earth round the site; other maps are read at the stereographic place of a point; all bilinearly
+        between texels. Light: `sun` (3,), `sun_irradiance` above the air [W m-2], `haze` of the air, and
+        `wide_albedo`, the ground that its multiply scattered light is computed over. `background`, zero: the reference
+        draws the sky itself.
     """
     axes = globe_axes(state.planet.latitude, state.planet.longitude)
     return {
@@ -58,8 +60,9 @@ def world_arrays(state: CloudsState, baked: Mapping[str, Arrays]) -> dict[str, A
         "cloud_side": cloud_side(state),
         "cloud_repeats": state.clouds.kind != "asset" or state.clouds.repeats,
         "cloud_drift": drift(state),
-        "systems": baked["fields"]["systems"],
-        "systems_side": SYSTEMS_SIDE,
+        "systems": round_site(
+            baked["fields"]["systems"], state.planet.latitude, state.planet.longitude, state.planet.radius
+        ),
         "sun": tuple(float(v) for v in direction(state.sun)),
         "sun_irradiance": SOLAR_CONSTANT,
         "haze": state.air.haze,

@@ -17,5 +17,3 @@ LAND_RIM = 3000.0
 CLOUD_NODES = 1024
 """Texels a side of the cloud maps."""
 
-SYSTEMS_SIDE = 6.0e6
-"""Side of the map of the weather systems, m, after which it repeats."""

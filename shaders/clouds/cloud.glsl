@@ -5,6 +5,7 @@
 // The sun may stand below the horizon of the layer and light its base, after it has crossed the layer far away (formulas a8).
 
 const float SWELL_SHADE = 0.07;
+const float GAPS = 8.0; // optical depth of a closed layer to a grazing sun: gaps let some light through a broken one
 
 struct Lit {
     vec3 light; // W m-2 sr-1
@@ -16,9 +17,9 @@ vec3 sun_at_layer(vec3 point, float altitude, float mu) {
     vec3 light = sun_irradiance * sun_through_air(altitude, mu);
 #if TWILIGHT == 1
     float far = -2.0 * (planet_radius + layer_base) * mu; // where a ray that dips below the layer meets it again
-    Cover cover = cover_at(place_of(point + sun_direction * max(far, 0.0)), 4000.0);
-    float slant = geometry_slant(abs(mu), layer_base, max(cover.thickness, 1.0e-3));
-    float depth = layer_extinction * slant * min(cover.thickness, 1.0);
+    Cover cover = cover_at(place_of(point + sun_direction * max(far, 0.0)), 4.0e4); // a grazing ray is that long in the layer
+    float slant = geometry_slant(abs(mu), layer_base, max(layer_thickness, 1.0e-3));
+    float depth = min(layer_extinction * slant, GAPS) * cover.thickness / max(layer_thickness, 1.0e-3);
     light *= mu < 0.0 ? exp(-min(depth, AIR_DARKEST)) : 1.0;
 #endif
     return light;

@@ -2,7 +2,7 @@
 //
 // cloud_map      r: thickness as a share of the layer's, below 0 between clouds, so that edges do not follow the texels; gb: how it
 //                grows east and north per metre; a: what of r is above 0, for means over more than a texel; the moment's
-// cloud_systems  share of that which the weather systems leave
+// cloud_systems  share of that which the weather systems leave, over the whole Earth round the site
 // A footprint chooses the mip level: thickness is averaged before light is computed, so a distant broken layer is a thin one.
 
 struct Cover {
@@ -14,12 +14,15 @@ struct Cover {
 Cover cover_at(vec2 place, float footprint) {
     vec2 at = (place - cloud_drift) / cloud_side;
     float texel = cloud_side / float(textureSize(cloud_map, 0).x);
-    float level = log2(max(footprint / texel, 1.0));
+    vec2 half_place = place / (2.0 * planet_radius);
+    float stretched = 1.0 + dot(half_place, half_place); // of the stereographic projection
+    float level = log2(max(footprint * stretched / texel, 1.0));
     vec4 found = textureLod(cloud_map, at + 0.5, level);
     float share = mix(max(found.r, 0.0), found.a, min(level, 1.0));
     float inside = cloud_repeats > 0.5 ? 1.0 : float(max(abs(at.x), abs(at.y)) < 0.5);
-    float wide = cloud_systems_side / float(textureSize(cloud_systems, 0).x);
-    float systems = textureLod(cloud_systems, (place - cloud_drift) / cloud_systems_side, log2(max(footprint / wide, 1.0))).r;
+    float wide = 4.0 * planet_radius / float(textureSize(cloud_systems, 0).x);
+    vec2 weather = half_place * inversesqrt(stretched); // Lambert's projection of the whole sphere, -1 to 1
+    float systems = textureLod(cloud_systems, 0.5 + 0.5 * weather, log2(max(footprint / wide, 1.0))).r;
     return Cover(layer_thickness * inside * systems * share, layer_thickness * inside * systems * found.gb);
 }
 

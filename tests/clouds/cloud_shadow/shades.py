@@ -25,7 +25,6 @@ DECLARED = "\n".join(
         "vec2 cloud_drift",
         "float cloud_side",
         "float cloud_repeats",
-        "float cloud_systems_side",
         "vec3 sun_direction",
         "sampler2D cloud_map",
         "sampler2D cloud_systems",
@@ -55,7 +54,6 @@ def shade(
         "cloud_drift": (0.0, 0.0),
         "cloud_side": SIDE,
         "cloud_repeats": 1.0,
-        "cloud_systems_side": 1e6,
         "sun_direction": sun,
     }
     point = "vec3(x, 0.0, 0.0)"
