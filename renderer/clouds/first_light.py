@@ -17,7 +17,6 @@ from scipy.ndimage import map_coordinates
 from renderer.clouds.air import MARGIN
 from renderer.clouds.cloud_map import thickness_map
 from renderer.clouds.land import horizon_towards
-from renderer.clouds.radiosity.bases import GRID
 from renderer.clouds.radiosity.maps import BounceMaps, square_cells
 from renderer.clouds.weather import round_site
 from renderer.clouds.world_scale import AIR_TOP, LAND_CELL
@@ -28,7 +27,7 @@ from renderer.world.sun import angles, direction
 if TYPE_CHECKING:
     from renderer.clouds.state import CloudsState
 
-WITHIN = 2
+WITHIN = 4
 """Places along each side of a cell whose mean it takes."""
 
 HIGHEST = 0.9
@@ -71,7 +70,7 @@ def places(base: float) -> np.ndarray:
 def cells(field: np.ndarray) -> np.ndarray:
     """Means over cells of what was sampled, (P, P[, C]) to (GRID, GRID[, C])."""
     # Sums of strided pictures: a mean over two axes at once takes four times as long.
-    rows = sum(field[k::WITHIN] for k in range(WITHIN))
+    rows = np.asarray(sum(field[k::WITHIN] for k in range(WITHIN)))
     return np.asarray(sum(rows[:, k::WITHIN] for k in range(WITHIN))) / WITHIN**2
 
 
