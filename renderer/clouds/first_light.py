@@ -16,13 +16,14 @@ from scipy.ndimage import map_coordinates
 
 from renderer.clouds.air import MARGIN
 from renderer.clouds.cloud_map import thickness_map
+from renderer.clouds.first_light_kernel import DEPTHS, read
 from renderer.clouds.land import horizon_towards
 from renderer.clouds.radiosity.maps import BounceMaps, square_cells
 from renderer.clouds.weather import round_site
 from renderer.clouds.world_scale import AIR_TOP, LAND_CELL
 from renderer.core.technique import Arrays
 from renderer.world.sky import SOLAR_CONSTANT, sky_for
-from renderer.world.sun import angles, direction
+from renderer.world.sun import ANGULAR_RADIUS, angles, direction
 
 if TYPE_CHECKING:
     from renderer.clouds.state import CloudsState
@@ -36,8 +37,11 @@ HIGHEST = 0.9
 DRIFTED = 1 / 8
 """Part of a cell that the layer drifts before its light is bounced anew."""
 
-DEPTHS = np.concatenate([[0.0], np.geomspace(1e-3, 1e4, 256)])
-"""Optical depths at which the layer's answers are tabulated for one sun."""
+DISC = 2 * ANGULAR_RADIUS
+"""Width of the sun's disc, rad."""
+
+KEEP = 2
+"""Grounds and layers kept while only the sun moves."""
 
 
 def moment(state: CloudsState) -> float:
@@ -52,13 +56,15 @@ class Land:
 
     Attributes:
         height: m, (P, P), row 0 at the south. albedo: (P, P, 3). rise: to the east and to the north, (2, P, P).
-        horizon: elevation above which the sun is seen, rad; none where the land ends.
     """
 
     height: np.ndarray
     albedo: np.ndarray
     rise: np.ndarray
-    horizon: np.ndarray
+
+
+GROUNDS: list[tuple[Arrays, tuple[Any, ...], Land]] = []
+LAYERS: list[tuple[Arrays, tuple[Any, ...], np.ndarray]] = []
 
 
 def places(base: float) -> np.ndarray:
@@ -74,29 +80,51 @@ def cells(field: np.ndarray) -> np.ndarray:
     return np.asarray(sum(rows[:, k::WITHIN] for k in range(WITHIN))) / WITHIN**2
 
 
-def land_of(land: Arrays, planet: Mapping[str, Any], base: float, azimuth: float) -> Land:
+def land_of(land: Arrays, planet: Mapping[str, Any], base: float) -> Land:
     """The ground of the square.
 
     Args:
-        land: of `bake_land`. planet: `albedo`, `snow_albedo`, `snow_line`. base: m. azimuth: of the sun, rad.
+        land: of `bake_land`. planet: `albedo`, `snow_albedo`, `snow_line`. base: m.
     """
     heights = np.asarray(land["height"], np.float64)
     coarse = heights.reshape(len(heights) // 2, 2, -1, 2).mean(axis=(1, 3))
     north, east = np.gradient(coarse, 2 * LAND_CELL)
-    at = np.floor(places(base) / (2 * LAND_CELL) + len(coarse) / 2).astype(int)
-    inside = (at >= 0) & (at < len(coarse))
-    within = inside[:, None] & inside[None, :]
-    rows, columns = np.ix_(np.clip(at, 0, len(coarse) - 1), np.clip(at, 0, len(coarse) - 1))
-
-    def sampled(field: np.ndarray, beyond: float) -> np.ndarray:
-        return np.where(within, field[rows, columns], beyond)
-
-    height = sampled(coarse, 0.0)
+    height = _sampled(coarse, base, 0.0)
     t = np.clip((height - planet["snow_line"]) / 120 + 0.5, 0, 1)
     snow = (t * t * (3 - 2 * t))[..., None]
     albedo = np.array(planet["albedo"]) * (1 - snow) + np.array(planet["snow_albedo"]) * snow
-    rise = np.stack([sampled(east, 0.0), sampled(north, 0.0)])
-    return Land(height, albedo, rise, sampled(horizon_towards(land, azimuth), -1.0))
+    return Land(height, albedo, np.stack([_sampled(east, base, 0.0), _sampled(north, base, 0.0)]))
+
+
+def _sampled(field: np.ndarray, base: float, beyond: float) -> np.ndarray:
+    """A field (N, N) over means of 2 x 2 of the land's nodes at the sampled places, and what lies beyond it."""
+    at = np.floor(places(base) / (2 * LAND_CELL) + len(field) / 2).astype(int)
+    inside = (at >= 0) & (at < len(field))
+    rows, columns = np.ix_(np.clip(at, 0, len(field) - 1), np.clip(at, 0, len(field) - 1))
+    return np.where(inside[:, None] & inside[None, :], field[rows, columns], beyond)
+
+
+def _ground(state: CloudsState, land: Arrays) -> Land:
+    """The ground of a document's square, kept while only the sun moves."""
+    planet = {name: getattr(state.planet, name) for name in ("albedo", "snow_albedo", "snow_line")}
+    base = state.layer.base
+    return _kept(GROUNDS, land, (*planet.values(), base), lambda: land_of(land, planet, base))
+
+
+def _overhead(state: CloudsState, fields: Arrays) -> np.ndarray:
+    """Optical depth over the places, kept while only the sun moves."""
+    key = (state.layer, state.clouds, moment(state))
+    return _kept(LAYERS, fields, key, lambda: depth_at(state, fields, (0.0, 0.0)))
+
+
+def _kept(known: list[tuple[Arrays, tuple[Any, ...], Any]], arrays: Arrays, key: tuple[Any, ...], make: Any) -> Any:
+    """What was made of some arrays and a key, or a new one in the place of the oldest."""
+    for entry in known:
+        if entry[0] is arrays and entry[1] == key:
+            return entry[2]
+    made = make()
+    known[:] = [(arrays, key, made), *known[: KEEP - 1]]
+    return made
 
 
 def depth_at(state: CloudsState, fields: Arrays, shift: tuple[float, float]) -> np.ndarray:
@@ -131,10 +159,9 @@ def bounce_maps(state: CloudsState, baked: Mapping[str, Arrays]) -> BounceMaps:
     sun, mu = direction(state.sun), math.sin(elevation)
     light = sky_for(baked["sky"], elevation)
     base = state.layer.base
-    planet = {name: getattr(state.planet, name) for name in ("albedo", "snow_albedo", "snow_line")}
-    land = land_of(baked["land"], planet, base, azimuth)
+    land = _ground(state, baked["land"])
     slant = min(base / max(mu, 0.02), 20 * base)
-    depth = depth_at(state, baked["fields"], (0.0, 0.0))
+    depth = _overhead(state, baked["fields"])
     along = depth_at(state, baked["fields"], (slant * sun[0], slant * sun[1]))
 
     model = state.scattering.model(baked)
@@ -145,10 +172,11 @@ def bounce_maps(state: CloudsState, baked: Mapping[str, Arrays]) -> BounceMaps:
 
     length = np.sqrt(1 + (land.rise**2).sum(axis=0))
     facing = np.maximum(mu - land.rise[0] * sun[0] - land.rise[1] * sun[1], 0) / length
-    t = np.clip((elevation - land.horizon) / 0.0093 + 0.5, 0, 1)
+    horizon = _sampled(horizon_towards(baked["land"], azimuth), base, -1.0)
+    t = np.clip((mu - horizon) / (DISC * max(math.cos(elevation), 0.01)) + 0.5, 0, 1)
     facing = facing * (t * t * (3 - 2 * t))
-    above = _read(np.concatenate([np.maximum(passed - direct, 0), even], axis=1), depth)
-    beam = facing[..., None] * _read(direct, along) + max(mu, 0.0) * above[..., :3]
+    above = read(np.concatenate([np.maximum(passed - direct, 0), even], axis=1), depth, DEPTHS)
+    beam = facing[..., None] * read(direct, along, DEPTHS) + max(mu, 0.0) * above[..., :3]
     ground = light.sun_irradiance * beam + light.sky_irradiance * (1 - above[..., 3:])
     n, cell = square_cells(base)
     albedo = cells(land.albedo * ground) / np.maximum(cells(ground), 1e-9)
@@ -169,13 +197,6 @@ def _bands(values: np.ndarray) -> np.ndarray:
     return values if values.ndim == 2 else np.repeat(values[:, None], 3, axis=1)
 
 
-def _read(table: np.ndarray, depth: np.ndarray) -> np.ndarray:
-    """Values at optical depths, from those at DEPTHS (D, C): (.., C)."""
-    place = np.interp(depth, DEPTHS, np.arange(float(len(DEPTHS))))
-    low = np.minimum(place.astype(int), len(DEPTHS) - 2)
-    return table[low] + (place - low)[..., None] * (table[low + 1] - table[low])
-
-
 def _beam(air: Arrays, altitude: float, mu: float) -> np.ndarray:
     """Share of the sun's light that arrives at a height [m], (3,): from the table of `bake_air`."""
     table = np.asarray(air["beam"], np.float64)
@@ -192,6 +213,6 @@ def _beam(air: Arrays, altitude: float, mu: float) -> np.ndarray:
 def bake_bounce_ground(arguments: dict[str, Any], inputs: dict[str, Arrays], progress: Any) -> dict[str, np.ndarray]:
     """The ground of the square for transfer matrices: `elevation` [m] and `albedo`, (GRID, GRID[, 3])."""
     progress(0.0, "averaging the land over the square")
-    land = land_of(inputs["land"], arguments, arguments["height"], 0.0)
+    land = land_of(inputs["land"], arguments, arguments["height"])
     elevation = np.minimum(cells(land.height), HIGHEST * arguments["height"])
     return {"elevation": elevation, "albedo": cells(land.albedo)}
