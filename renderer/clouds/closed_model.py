@@ -13,7 +13,7 @@ from renderer.clouds.phase_tables import look_up
 from renderer.clouds.slab import GRAZING, Slab, direct
 from renderer.clouds.slab_axes import cosine_place, depth_place
 from renderer.clouds.slab_axes import look_up as look_up_axes
-from renderer.clouds.technique import ScatteringTechnique
+from renderer.clouds.technique import ScatteringTechnique, padded
 from renderer.core.technique import Arrays, Bake
 
 
@@ -28,7 +28,7 @@ class FluxTechnique(ScatteringTechnique):
 
     def kept_textures(self, state: Any, baked: Mapping[str, Arrays]) -> dict[str, np.ndarray]:
         """Fluxes of the four kinds one above the other, by optical depth and sun."""
-        return {"fluxes": np.concatenate(list(baked["order_fluxes"]["fluxes"]))}
+        return {"fluxes": padded(np.concatenate(list(baked["order_fluxes"]["fluxes"])))}
 
 
 class ClosedModel:

@@ -42,11 +42,17 @@ float slab_direct(float tau, float mu) {
     return exp(-min(tau / max(mu, SLAB_GRAZING), SLAB_DEEPEST));
 }
 
-// Order 1 on the sunlit side, of a layer of `kept` times the depth.
+// Order 1 of a layer of `kept` times the depth, over `kept`, on the sunlit side (up) or on the other: y (1 - e^-(x + y)) / (x + y), and
+// y (e^-x - e^-y) / (y - x) written from the shorter path, so that no exponential grows; x, y the paths of sun and view.
+vec3 slab_first(Slab s, vec3 kept, bool up) {
+    float x = s.optical_depth / s.mu_sun;
+    float y = s.optical_depth / s.mu_view;
+    vec3 through = exp(-min(kept * (up ? 0.0 : min(x, y)), vec3(SLAB_DEEPEST)));
+    return y * through * slab_mean_decay(kept * (up ? x + y : abs(x - y)));
+}
+
 vec3 slab_first_up(Slab s, vec3 kept) {
-    float a = s.optical_depth * (1.0 / s.mu_sun + 1.0 / s.mu_view);
-    vec3 depth = kept * a;
-    return depth * slab_mean_decay(depth) * (s.mu_sun / (s.mu_sun + s.mu_view));
+    return kept * slab_first(s, kept, true);
 }
 
 // Order 2 on the sunlit side.
@@ -56,11 +62,8 @@ float slab_second_up(Slab s) {
         * s.mu_sun / (s.mu_sun + s.mu_view);
 }
 
-// Order 1 on the other side, of a layer of `kept` times the depth: written from the shorter path, so that no exponential grows.
 vec3 slab_first_down(Slab s, vec3 kept) {
-    float x = s.optical_depth / s.mu_sun;
-    float y = s.optical_depth / s.mu_view;
-    return kept * y * exp(-min(kept * min(x, y), vec3(SLAB_DEEPEST))) * slab_mean_decay(kept * abs(x - y));
+    return kept * slab_first(s, kept, false);
 }
 
 // Order 2 on the other side.

@@ -9,7 +9,7 @@ import numpy as np
 
 from renderer.clouds.droplets import Distribution, Droplets
 from renderer.clouds.phase_tables import bake_droplets
-from renderer.clouds.technique import PhaseTechnique
+from renderer.clouds.technique import PhaseTechnique, padded
 from renderer.core.params import bake_arguments, param
 from renderer.core.technique import Arrays, Bake
 
@@ -55,5 +55,5 @@ class Mie(PhaseTechnique):
         return Bake("phase", bake_droplets, arguments, version=3, seconds=2 + 0.08 * self.radius**2)
 
     def kept_textures(self, state: Any, baked: Mapping[str, Arrays]) -> dict[str, np.ndarray]:
-        """`table` (2, TABLE, 3): the phase function, and below it its convolution with itself, 1/sr."""
-        return {"table": np.stack([baked["phase"]["value"], baked["phase"]["twice"]])}
+        """`table` (2, TABLE, 4): the phase function, and below it its convolution with itself, 1/sr."""
+        return {"table": padded(np.stack([baked["phase"]["value"], baked["phase"]["twice"]]))}

@@ -12,7 +12,7 @@ from renderer.clouds import slab_axes as axes
 from renderer.clouds import slab_tables as tables
 from renderer.clouds.phase_tables import look_up, table_place
 from renderer.clouds.slab import Slab, direct, first_down, first_up
-from renderer.clouds.technique import ScatteringTechnique
+from renderer.clouds.technique import ScatteringTechnique, padded
 from renderer.core.params import param
 from renderer.core.technique import Arrays, Bake
 
@@ -36,6 +36,7 @@ class AddingDoubling(ScatteringTechnique):
         "all",
         label="Orders",
         help="Which orders of scattering are shown: all, the glow of the forward peak, one, or the rest.",
+        cost="build",
         source="Belcour 2009, section 4.3",
     )
 
@@ -47,8 +48,10 @@ class AddingDoubling(ScatteringTechnique):
         """Volumes by optical depth (the two sides one above the other), sun and view; pictures by optical depth and
         sun, or by path and angle."""
         found = baked["doubling"]
-        volumes = {name: np.concatenate(list(found[name])) for name in ("mean", "low", "high")}
-        return {**volumes, "flux": found["flux"], "even": found["even"][None], "glow": found["glow"]}
+        turns = {name: np.concatenate(list(found[name])) for name in ("low", "high")}
+        bands = {"mean": np.concatenate(list(found["mean"])), "flux": found["flux"], "even": found["even"][None],
+                 "glow": found["glow"]}
+        return {**turns, **{name: padded(array) for name, array in bands.items()}}
 
     def constants(self, state: Any, baked: Mapping[str, Arrays]) -> dict[str, Any]:
         """Share of the peak in each band."""

@@ -10,6 +10,7 @@ import numpy as np
 from renderer.clouds.closed_model import ClosedModel, FluxTechnique, safe
 from renderer.clouds.slab import Slab, first_down, first_up
 from renderer.clouds.slab import direct as passed
+from renderer.clouds.technique import padded
 from renderer.core.technique import Arrays
 
 
@@ -26,7 +27,7 @@ class Single(FluxTechnique):
 
     def kept_textures(self, state: Any, baked: Mapping[str, Arrays]) -> dict[str, np.ndarray]:
         """Fluxes by optical depth and sun, those of even light by depth."""
-        return {**super().kept_textures(state, baked), "even": baked["order_fluxes"]["even"][None]}
+        return {**super().kept_textures(state, baked), "even": padded(baked["order_fluxes"]["even"][None])}
 
     def model(self, baked: Mapping[str, Arrays]) -> SingleModel:
         """The same in float64."""

@@ -62,8 +62,6 @@ vec3 scattering_peak_factor(Slab s, bool up) {
 // Light that leaves on the sunlit side (up) or on the other, with one look at each table for both.
 vec3 scattering_leaving(Slab given, bool up) {
     Slab s = slab_safe(given);
-    vec3 kept = 1.0 - scattering_peak;
-    vec3 scaled = (up ? slab_first_up(s, kept) : slab_first_down(s, kept)) / kept;
     vec3 place = slab_place(s);
     place.z = 0.5 * (up ? place.z : place.z + 1.0);
     vec4 low, high;
@@ -72,12 +70,20 @@ vec3 scattering_leaving(Slab given, bool up) {
     float share = scattering_share(s) / (up ? 1.0 : 1.0 + 0.1 * s.optical_depth);
     vec3 more = max(textureLod(scattering_mean, place, 0.0).rgb + turned, 0.0) * share;
     vec3 P = phase_value(s.cosine);
-    vec3 bright = P * scaled * scattering_peak_factor(s, up);
-    if (scattering_order == scattering_order_all) return more + bright;
-    vec3 single = P * (up ? slab_first_up(s, vec3(1.0)) : slab_first_down(s, vec3(1.0)));
+    vec3 bright = P * slab_first(s, 1.0 - scattering_peak, up) * scattering_peak_factor(s, up);
+#if SCATTERING_ORDER == SCATTERING_ORDER_ALL
+    return more + bright;
+#else
+    vec3 single = P * slab_first(s, vec3(1.0), up);
     vec3 forward = !up && s.cosine > SCATTERING_FORWARD ? bright - single : vec3(0.0);
-    if (scattering_order == scattering_order_single) return single;
-    return scattering_order == scattering_order_forward ? forward : more + bright - single - forward;
+#if SCATTERING_ORDER == SCATTERING_ORDER_SINGLE
+    return single;
+#elif SCATTERING_ORDER == SCATTERING_ORDER_FORWARD
+    return forward;
+#else
+    return more + bright - single - forward;
+#endif
+#endif
 }
 
 vec3 scattering_up(Slab s) {

@@ -34,7 +34,7 @@ def test_fluxes_are_their_twins(ask: Ask, baked: Baked, technique: AddingDoublin
 
 
 @pytest.mark.parametrize(("up", "right", "wrong"), [
-    (True, ": slab_first_down(s, kept)) / kept", ": slab_first_down(s, kept))"),
+    (True, "slab_first(s, 1.0 - scattering_peak, up)", "slab_first(s, vec3(1.0), up)"),
     (True, "low = vec4(c, c2, c3, c4)", "low = vec4(c2, c, c3, c4)"),
     (True, "0.5 * (up ? place.z : place.z + 1.0)", "0.5 * (up ? place.z + 1.0 : place.z)"),
     (False, "1.0 + 0.1 * s.optical_depth", "1.0 + 0.2 * s.optical_depth"),
