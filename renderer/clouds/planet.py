@@ -60,7 +60,7 @@ class ProceduralClouds(Model):
         "stratocumulus", label="Kind", help="An even sheet, or closed cells.", cost="bake"
     )
     cover: float = param(
-        0.9, label="Cover", help="Share of the sky that they close.", unit="ratio", cost="host", ge=0, le=1, step=0.01
+        0.8, label="Cover", help="Share of the sky that they close.", unit="ratio", cost="host", ge=0, le=1, step=0.01
     )
     variation: float = param(
         0.35,

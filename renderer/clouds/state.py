@@ -9,7 +9,7 @@ from renderer.core.params import param
 from renderer.core.registry import slot_union
 from renderer.world.atmosphere import Atmosphere
 from renderer.world.camera import Camera, Orbit
-from renderer.world.state import SceneState
+from renderer.world.state import SceneState, View
 from renderer.world.sun import Sun, SunDirection
 
 SLOTS = ("geometry", "phase", "scattering", "cloud_shadow", "basis", "bounce")
@@ -33,14 +33,15 @@ class CloudsState(SceneState):
 
     scene: Literal["clouds"] = "clouds"
     camera: Camera = param(
-        Orbit(target=(0.0, 0.0, 1500.0), distance=16000.0, azimuth=200.0, elevation=14.0),
+        Orbit(target=(0.0, 0.0, 2300.0), distance=12000.0, azimuth=200.0, elevation=10.0, field_of_view=45.0),
         label="Camera",
         help="Where the picture is taken from.",
         cost="host",
     )
     sun: Sun = param(
-        SunDirection(azimuth=250.0, elevation=25.0), label="Sun", help="Where the light comes from.", cost="host"
+        SunDirection(azimuth=110.0, elevation=14.0), label="Sun", help="Where the light comes from.", cost="host"
     )
+    view: View = param(View(exposure=-1.0), label="View", help="Exposure, tone curve and background.", cost="host")
     layer: Layer = param(Layer(), label="Layer", help="The layer of clouds.")
     clouds: Clouds = param(ProceduralClouds(), label="Cloud map", help="Where the layer is thick.", cost="bake")
     planet: Planet = param(Planet(), label="Planet", help="The sphere, the site and its ground.")
