@@ -1,4 +1,4 @@
-"""Fogbow and glory in the picture itself: rings round the shadow's point of a thick, even layer under a sun overhead."""
+"""Fogbow and glory in the picture itself: rings round the shadow's point of a thick, even layer, the sun overhead."""
 
 from __future__ import annotations
 
