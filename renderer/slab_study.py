@@ -7,7 +7,7 @@ a known standard error; it is taken off the errors of radiance, as it is indepen
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
@@ -15,9 +15,10 @@ import numpy as np
 from renderer.clouds.bows import bows
 from renderer.clouds.droplets import BANDS, Droplets, scattering, water_index
 from renderer.clouds.legendre import share_within, values_of
-from renderer.clouds.measured_slab import model_of
+from renderer.clouds.measured_slab import evaluate, model_of
 from renderer.clouds.phase_tables import FORWARD_ANGLE, SUN_RADIUS
 from renderer.clouds.slab import Slab, SlabModel, first_up, second_up
+from renderer.clouds.solving import solve
 from renderer.core.baking import bake_now
 from renderer.core.cache import Cache
 from renderer.core.registry import techniques
@@ -33,6 +34,10 @@ DEPTHS = (0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 128.0)
 SUNS = (0.1, 0.2, 0.4, 0.7, 1.0)
 BINS = (10, 6)
 """Of the cosine and the azimuth of leaving light."""
+
+VIEWS = np.array([0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.99])
+AZIMUTHS = np.radians(np.arange(13) * 15.0)
+"""Directions in which techniques are held to the solver."""
 
 SEED = 20_261_122
 AUREOLE = np.radians(15.0)
@@ -110,6 +115,8 @@ def technique_errors(count: int, cache: Cache, tell: Tell) -> list[dict[str, Any
     """Every technique at every depth and sun: one line each, for droplets of 10 um, 10 % wide, at 650 nm."""
     moments = scattering(Droplets(), BANDS[0], water_index(BANDS[0]))["moments"]
     models = {kind: model_of(kind, moments) for kind in techniques("clouds", "scattering")}
+    tell(0.0, "the solver")
+    quiet = solver_errors(models, moments)
     lines = []
     for row, depth in enumerate(DEPTHS):
         for column, sun in enumerate(SUNS):
@@ -125,8 +132,27 @@ def technique_errors(count: int, cache: Cache, tell: Tell) -> list[dict[str, Any
                     "off_reflectance": reflected - known, "off_transmittance": passed - (1 - known),
                     "up": radiance_errors(model, found, depth, sun, True),
                     "down": radiance_errors(model, found, depth, sun, False),
+                    "solver": quiet[kind][row, column].tolist(),
                 })
     return lines
+
+
+def solver_errors(models: Mapping[str, SlabModel], moments: np.ndarray) -> dict[str, np.ndarray]:
+    """Error of each technique against the solver without tables, which has no noise.
+
+    Returns:
+        (T, S, 3) by kind: of reflectance, in shares of the beam; median relative error of radiance up and down over
+        VIEWS and AZIMUTHS.
+    """
+    depths, suns = np.array(DEPTHS), np.array(SUNS)
+    known = solve(moments, 1.0, depths, suns, VIEWS, AZIMUTHS)
+    found = {}
+    for kind, model in models.items():
+        own = evaluate(model, depths, suns, VIEWS, AZIMUTHS)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            medians = [np.median(np.abs(own[side] / known[side] - 1), axis=(2, 3)) for side in ("L_up", "L_down")]
+        found[kind] = np.stack([np.abs(own["R"] - known["R"]), *medians], axis=-1)
+    return found
 
 
 def order_numbers(count: int, cache: Cache, tell: Tell) -> list[dict[str, Any]]:
