@@ -18,7 +18,7 @@ vec3 scattering_transmittance(float tau, float mu) {
 }
 
 vec3 scattering_reflectance(float tau, float mu) {
-    return 1.0 - scattering_transmittance(tau, mu);
+    return max(1.0 - scattering_transmittance(tau, mu), 0.0);
 }
 
 vec3 scattering_diffuse_reflectance(float tau) {
