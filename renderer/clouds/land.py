@@ -16,9 +16,6 @@ from renderer.core.technique import Arrays
 from renderer.world.horizon_sweep import sweeps
 from renderer.world.terrain import TerrainReading, crop, default_terrain, load_terrain
 
-COARSE_CELLS = 64
-"""Coarse cells a side of the land: a ray above the highest land of one and its neighbours leaps over it."""
-
 HORIZON_AZIMUTHS = 64
 """Azimuths in which the land's horizon is kept."""
 
@@ -46,7 +43,6 @@ def bake_land(arguments: dict[str, Any], inputs: dict[str, Arrays], progress: Ca
         "height": height[::-1].copy(),
         "top": np.array(float(height.max())),
         "steepness": np.array(_steepness(height)),
-        "tops": _tops(height)[::-1].copy(),
         "horizon": (horizon := _horizons(height, progress)),
         "open": _open(height, horizon),
     }
@@ -95,10 +91,14 @@ def _coarse(height: np.ndarray) -> np.ndarray:
     return found
 
 
-def _tops(height: np.ndarray) -> np.ndarray:
-    cells = height.reshape(COARSE_CELLS, LAND_NODES // COARSE_CELLS, COARSE_CELLS, -1).max(axis=(1, 3))
-    found: np.ndarray = maximum_filter(cells, 3, mode="nearest").astype(np.float32)
-    return found
+def tops(height: np.ndarray) -> list[np.ndarray]:
+    """The highest land of each node's cell (N, N) [m], whose heights its neighbours have a part in, and then of each
+    2 x 2 cells, down to one."""
+    levels = [maximum_filter(height, 3, mode="nearest").astype(np.float32)]
+    while len(levels[-1]) > 1:
+        half = len(levels[-1]) // 2
+        levels.append(levels[-1].reshape(half, 2, half, 2).max(axis=(1, 3)))
+    return levels
 
 
 def _steepness(height: np.ndarray) -> float:

@@ -17,8 +17,14 @@ if TYPE_CHECKING:
     from renderer.clouds.state import CloudsState
     from renderer.clouds.technique import CloudsTechnique
 
-LAND_STEPS = 96
-"""Steps that a ray may take over the land before it meets it."""
+LAND_STEPS = 160
+"""Cells of the land, coarse and fine, that a ray may be asked about before it meets it."""
+
+LAND_BLOCK = 4
+"""Pixels a side of the blocks from one pixel of which the ground is scouted."""
+
+LAND_COARSEST = 5
+"""Level of the coarsest cells: 32 nodes a side."""
 
 AIR_STEPS = 8
 """Points of each stretch of air, where a parallel view has to walk it."""
@@ -37,6 +43,7 @@ uniform sampler2D cloud_map;
 uniform sampler2D cloud_systems;
 uniform sampler2D air_light;      // of the camera's place, W m-2 sr-1
 uniform sampler2D air_passed;     // optical depths of the same
+uniform sampler2D traced_scout;    // distance to the ground from one pixel of each block, m
 uniform sampler2D traced_ground;   // distance to the ground, m, and its normal
 uniform sampler2D traced_albedo;
 uniform sampler2D traced_first;    // stretches in the layer: middle, m, optical depth, thickness, m, apparent cosine
@@ -53,7 +60,6 @@ uniform vec3 globe_east;          // unit vectors of the Earth's axes in the sit
 uniform vec3 globe_north;
 uniform vec3 globe_up;
 uniform float land_cell;          // m
-uniform float land_reach;         // m
 uniform float land_top;           // m, nothing of the land is higher
 uniform float land_steepness;     // greatest rise over run
 uniform float layer_highest;      // greatest thickness against the layer's
@@ -66,8 +72,8 @@ uniform float pixel_angle;        // rad, width of a pixel in perspective
 uniform vec2 picture_size;
 uniform vec2 pixel_offset;        // of the sample within its pixel, from the top-left corner"""
 
-RAY_OF_PIXEL = """Path pixel_path(out vec3 origin, out vec3 direction) {
-    camera_ray(picture_pixel(gl_FragCoord.xy, picture_size) - 0.5 + pixel_offset, origin, direction);
+RAY_OF_PIXEL = """Path pixel_path(ivec2 pixel, out vec3 origin, out vec3 direction) {
+    camera_ray(picture_pixel(vec2(pixel) + 0.5, picture_size) - 0.5 + pixel_offset, origin, direction);
 #if AIR_TABLE == 1
     return path_from(origin, camera_excess, direction);
 #else
@@ -76,12 +82,20 @@ RAY_OF_PIXEL = """Path pixel_path(out vec3 origin, out vec3 direction) {
 }
 """
 
+SCOUT_BODY = """layout(location = 0) out float met;
+void main() {
+    vec3 origin, direction;
+    ivec2 block = ivec2(gl_FragCoord.xy);
+    Path path = pixel_path(min(block * LAND_BLOCK + LAND_BLOCK / 2, ivec2(picture_size) - 1), origin, direction);
+    met = ground_distance(path, origin, direction, pixel_angle, 0.0);
+}"""
+
 GROUND_BODY = """layout(location = 0) out vec4 found;
 layout(location = 1) out vec4 albedo;
 void main() {
     vec3 origin, direction;
-    Path path = pixel_path(origin, direction);
-    float t = ground_distance(path, origin, direction, pixel_angle);
+    Path path = pixel_path(ivec2(gl_FragCoord.xy), origin, direction);
+    float t = ground_distance(path, origin, direction, pixel_angle, scouted(ivec2(gl_FragCoord.xy)));
     vec3 point = origin + t * direction, up = up_at(point);
     vec2 place = place_of(point);
     vec3 normal = land_normal(place, up);
@@ -96,7 +110,7 @@ layout(location = 2) out vec4 slopes;
 layout(location = 3) out float overhead;
 void main() {
     vec3 origin, direction;
-    Path path = pixel_path(origin, direction);
+    Path path = pixel_path(ivec2(gl_FragCoord.xy), origin, direction);
     float t = texelFetch(traced_ground, ivec2(gl_FragCoord.xy), 0).x;
     float stop = t >= 0.0 ? t : NEVER;
     vec4 legs = layer_legs(path, layer_base, layer_base + max(layer_thickness * layer_highest, 1.0), stop);
@@ -126,7 +140,7 @@ void main() {
 SHADE_BODY = """layout(location = 0) out vec4 radiance;
 void main() {
     vec3 origin, direction;
-    Path path = pixel_path(origin, direction);
+    Path path = pixel_path(ivec2(gl_FragCoord.xy), origin, direction);
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     vec4 ground = texelFetch(traced_ground, pixel, 0), slopes = texelFetch(traced_slopes, pixel, 0);
     vec4 near = texelFetch(traced_first, pixel, 0), far = texelFetch(traced_second, pixel, 0);
@@ -160,6 +174,11 @@ class Variant:
     table: bool
     side: int
     twilight: bool
+
+
+def scout_source(variant: Variant) -> Source:
+    """The fragment stage that finds the ground from one pixel of each block."""
+    return _composed((), variant, ("clouds/ground.glsl",), SCOUT_BODY)
 
 
 def ground_source(variant: Variant) -> Source:
@@ -224,6 +243,8 @@ def technique_declarations(slot: str, technique: type[CloudsTechnique]) -> list[
 def _limits() -> dict[str, str | int]:
     return {
         "LAND_STEPS": LAND_STEPS,
+        "LAND_BLOCK": LAND_BLOCK,
+        "LAND_COARSEST": LAND_COARSEST,
         "AIR_STEPS": AIR_STEPS,
         "AIR_CEILING": repr(AIR_TOP),
         "AIR_SLICES": f"{AIR_SLICES}.0",

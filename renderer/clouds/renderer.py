@@ -10,15 +10,16 @@ import moderngl
 import numpy as np
 
 from renderer.clouds.cloud_map import highest
-from renderer.clouds.land import COARSE_CELLS
 from renderer.clouds.program import (
     AIR_AROUND,
     AIR_ROWS,
     AIR_SLICES,
+    LAND_BLOCK,
     Variant,
     air_source,
     ground_source,
     layer_source,
+    scout_source,
     shade_source,
 )
 from renderer.clouds.textures import horizon_texture, moment_map, technique_textures, weather_texture, world_textures
@@ -58,6 +59,9 @@ GROUNDS_KEPT, STRETCHES_KEPT = 32 << 20, 48 << 20
 LOW_SUN = math.radians(12.0)
 """Elevation at the camera's place below which a sun may have set for what the camera sees from within the air."""
 
+SCOUTS_KEPT = 1 << 20
+"""Bytes kept of the scouted ground, which only the next trace reads."""
+
 AIRS_KEPT = 8 << 20
 """Bytes kept of the air's tables: those of the last few cameras and suns."""
 
@@ -72,6 +76,7 @@ class CloudsRenderer:
         self._gl = gl
         self._baked = Resident(gl, 24)
         self._moment = Resident(gl, 24, MOMENTS_KEPT)
+        self._scouts = LayerStore(gl, ((1, "f4"),), SCOUTS_KEPT)
         self._grounds = LayerStore(gl, tuple(GROUND_LAYERS.values()), GROUNDS_KEPT)
         self._stretches = LayerStore(gl, tuple(LAYER_LAYERS.values()), STRETCHES_KEPT)
         self._airs = LayerStore(gl, ((4, "f4"),), AIRS_KEPT)
@@ -112,9 +117,15 @@ class CloudsRenderer:
         """The ground and the layer as one sample's rays meet them: the same for every sun."""
         ground_key = (state.camera, sample, state.planet, baked["land"].key)
 
-        def draw_ground(layers: Layers) -> None:
+        def draw_scout(layers: Layers) -> None:
             layers.use()
-            run_fullscreen(self._gl, ground_source(variant), textures, values)
+            run_fullscreen(self._gl, scout_source(variant), textures, values)
+
+        def draw_ground(layers: Layers) -> None:
+            blocks = tuple(-(-side // LAND_BLOCK) for side in sample[0])
+            scout = self._scouts.get(ground_key, (blocks[0], blocks[1]), draw_scout)[0]
+            layers.use()
+            run_fullscreen(self._gl, ground_source(variant), {**textures, "traced_scout": scout}, values)
 
         found: dict[str, AnyTexture] = dict(
             zip(GROUND_LAYERS, self._grounds.get(ground_key, sample[0], draw_ground), strict=True)
@@ -163,6 +174,7 @@ class CloudsRenderer:
         """Free every texture."""
         self._baked.release()
         self._moment.release()
+        self._scouts.release()
         self._grounds.release()
         self._stretches.release()
         self._airs.release()
@@ -207,7 +219,6 @@ def world_values(state: CloudsState, baked: Mapping[str, Arrays]) -> dict[str, A
         **globe_axes(state.planet.latitude, state.planet.longitude),
         "air_haze": state.air.haze,
         "land_cell": LAND_CELL,
-        "land_reach": LAND_CELL * LAND_NODES / COARSE_CELLS,
         "land_top": float(baked["land"]["top"]),
         "land_steepness": float(baked["land"]["steepness"]),
         "layer_highest": highest(state.clouds, baked["fields"]),

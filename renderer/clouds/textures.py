@@ -9,7 +9,7 @@ import numpy as np
 
 from renderer.clouds.air import skylight
 from renderer.clouds.cloud_map import thickness_map
-from renderer.clouds.land import horizon_towards
+from renderer.clouds.land import horizon_towards, tops
 from renderer.clouds.weather import round_site
 from renderer.core.technique import Arrays
 from renderer.gl.context import GL
@@ -38,12 +38,13 @@ def mipmapped(gl: GL, array: np.ndarray, repeat: bool) -> AnyTexture:
 
 def world_textures(gl: GL, baked: Mapping[str, Arrays]) -> dict[str, AnyTexture]:
     """Those that last as long as what was baked."""
+    highest = tops(baked["land"]["height"])
     return {
         "air_beam": gl.texture2d(baked["air"]["beam"]),
         "air_glow": gl.texture2d(baked["air"]["glow"]),
         "air_skylight": gl.texture2d(skylight(baked["sky"])),
         "globe_albedo": mipmapped(gl, baked["globe"]["albedo"], True),
-        "land_tops": gl.texture2d(baked["land"]["tops"], "nearest"),
+        "land_tops": gl.texture2d(highest[0], "nearest", mips=highest[1:]),
         "land_heights": gl.texture2d(baked["land"]["height"]),
     }
 

@@ -2,7 +2,8 @@
 //
 // What a ray finds of it is traced once for all suns. It does not know caves, overhangs or water that mirrors.
 // land_heights  m above the sphere, nodes land_cell apart round the site    globe_albedo  root of the Earth's albedo, by
-// longitude and latitude    land_tops  highest land within land_reach (m) of each coarse cell
+// longitude and latitude    land_tops  highest land of each node's cell, and of 2 x 2 of those
+// at each coarser level
 //   land_horizon  r: sine of the elevation above which each node of
 // the land sees the sun, g: share of an even sky's light that reaches it
 
@@ -17,35 +18,38 @@ float land_height(vec2 place) {
     return textureLod(land_heights, land_place(place), 0.0).r;
 }
 
-// Distance along a ray to the ground, m; NEVER where it meets none. `footprint`: width of the ray at one metre.
-float ground_distance(Path path, vec3 origin, vec3 direction, float footprint) {
+// Distance along a ray to the ground, m; NEVER where it meets none. footprint: width of the ray at one metre. first: m, before
+// which it meets no land.
+float ground_distance(Path path, vec3 origin, vec3 direction, float footprint, float first) {
     float end = sphere_distance(path);
-    if (land_top <= 0.0) return end;
+    if (land_top <= 0.0 || first >= end) return end;
     // The stretch of the ray between the land's top and the sphere, over the land's square.
     vec2 roof = path_distances(path, land_top);
     float half_side = 0.5 * land_cell * float(textureSize(land_heights, 0).x);
     vec2 to_sides = (sign(direction.xy) * half_side - origin.xy) / (abs(direction.xy) + 1.0e-9) * sign(direction.xy);
     vec2 from_sides = (-sign(direction.xy) * half_side - origin.xy) / (abs(direction.xy) + 1.0e-9) * sign(direction.xy);
-    float t = max(max(roof.x, 0.0), max(from_sides.x, from_sides.y));
+    float t = max(max(roof.x, first), max(from_sides.x, from_sides.y));
     float stop = min(min(end, roof.y), min(to_sides.x, to_sides.y));
-    float found = NEVER, before = t, gap_before = 1.0;
-    float run = max(length(direction.xy), 1.0e-3);
+    float size = float(textureSize(land_heights, 0).x), found = NEVER;
+    vec2 speed = direction.xy / land_cell; // nodes per metre
+    speed = mix(speed, vec2(1.0e-9), lessThan(abs(speed), vec2(1.0e-9)));
+    int level = first > 0.0 ? 0 : LAND_COARSEST;
     for (int k = 0; k < LAND_STEPS; k++) {
         if (t >= stop || found < NEVER) break;
-        vec3 point = origin + t * direction;
-        vec2 place = place_of(point);
-        float altitude = path_altitude(path, t), gap = altitude - land_height(place);
-        if (gap <= 0.0) {
-            found = k == 0 ? t : mix(before, t, gap_before / max(gap_before - gap, 1.0e-6));
-        } else {
-            before = t;
-            gap_before = gap;
-            float descent = max(-(path.along + t) / (planet_radius + altitude), 0.0); // fall per metre of the ray
-            // Nothing of the land within a coarse cell's side is higher than its texel of land_tops.
-            float roof = textureLod(land_tops, land_place(place), 0.0).r;
-            float clear = altitude > roof ? min(land_reach / run, (altitude - roof) / max(descent, 1.0e-3)) : 0.0;
-            t += max(max(gap / max(land_steepness * run + descent, 0.02), clear), max(footprint * t, 0.2 * land_cell));
-        }
+        vec2 at = land_place(place_of(origin + t * direction)) * size;
+        float side = float(1 << level);
+        vec2 cell = floor(at / side);
+        vec2 ahead = ((cell + step(0.0, speed)) * side - at) / speed;
+        // A little more than to the cell's edge, so that the next step is in the next cell.
+        float until = min(t + max(min(ahead.x, ahead.y), 0.0) + 0.02 * land_cell, stop);
+        float top = texelFetch(land_tops, clamp(ivec2(cell), ivec2(0), ivec2(int(size) >> level) - 1), level).r;
+        bool clear = path_altitude(path, clamp(-path.along, t, until)) > top;
+        bool fine = level == 0 || side * land_cell < footprint * t;
+        float gap = path_altitude(path, t) - land_height(place_of(origin + t * direction));
+        float gap_until = path_altitude(path, until) - land_height(place_of(origin + until * direction));
+        if (!clear && fine && gap_until <= 0.0) found = gap <= 0.0 ? t : mix(t, until, gap / max(gap - gap_until, 1.0e-6));
+        if (clear || fine) t = until;
+        level = clear ? min(level + 1, LAND_COARSEST) : max(level - 1, 0);
     }
     return min(found, end);
 }
@@ -89,4 +93,14 @@ vec2 land_sees(vec2 place, float mu) {
     // Near the horizon, where it matters, a sine is its angle.
     float t = clamp((mu - horizon) / (2.0 * SUN_RADIUS * sqrt(max(1.0 - mu * mu, 1.0e-4))) + 0.5, 0.0, 1.0);
     return mix(vec2(1.0), vec2(t * t * (3.0 - 2.0 * t), found.g), inside.x * inside.y);
+}
+
+// Before what distance the rays of a pixel's block and of those around it meet no land, m: a little nearer than their nearest
+// ray did. Ridges narrower than a block, against the sky, may lose a pixel.
+float scouted(ivec2 pixel) {
+    ivec2 block = pixel / LAND_BLOCK, last = textureSize(traced_scout, 0) - 1;
+    float nearest = NEVER;
+    for (int k = 0; k < 9; k++)
+        nearest = min(nearest, texelFetch(traced_scout, clamp(block + ivec2(k % 3, k / 3) - 1, ivec2(0), last), 0).r);
+    return nearest < NEVER ? 0.985 * nearest : NEVER;
 }
