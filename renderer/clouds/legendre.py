@@ -6,8 +6,11 @@ over the sphere of f P_l. Convolution on the sphere multiplies moments, so that 
 
 from __future__ import annotations
 
+import functools
+
 import numpy as np
-from numpy.polynomial.legendre import leggauss, legval
+from numpy.polynomial.legendre import legval
+from scipy.special import roots_legendre
 
 
 def moments_of(values: np.ndarray, nodes: np.ndarray, weights: np.ndarray, count: int) -> np.ndarray:
@@ -49,9 +52,10 @@ def disc_moments(count: int, radius: float) -> np.ndarray:
     return _cap_integrals(count, cosine) / (2 * np.arange(count) + 1) / (1 - cosine)
 
 
+@functools.cache
 def gauss(count: int) -> tuple[np.ndarray, np.ndarray]:
-    """Nodes and weights of the Gauss-Legendre quadrature on [-1, 1]."""
-    nodes, weights = leggauss(count)
+    """Nodes and weights of the Gauss-Legendre quadrature on [-1, 1]; not to be written to."""
+    nodes, weights = roots_legendre(count)
     return nodes, weights
 
 
