@@ -28,7 +28,7 @@ def bake_land(arguments: dict[str, Any], inputs: dict[str, Arrays], progress: Ca
 
     Returns:
         `height` (N, N) float32 [m], row 0 the SOUTHERN edge, nodes `LAND_CELL` apart around the site, 0 at the edge;
-        `top` () the highest [m] and `steepness` () the greatest rise over run; `horizon` (A, N / 2, N / 2) float32
+        `top` () the highest [m]; `horizon` (A, N / 2, N / 2) float32
         [-], the sine of the elevation of the land's horizon towards A azimuths clockwise from north, at the means of
         2 x 2 nodes; `open` (N / 2, N / 2) [-], the share of an even sky's light that reaches each.
     """
@@ -42,7 +42,6 @@ def bake_land(arguments: dict[str, Any], inputs: dict[str, Arrays], progress: Ca
     return {
         "height": height[::-1].copy(),
         "top": np.array(float(height.max())),
-        "steepness": np.array(_steepness(height)),
         "horizon": (horizon := _horizons(height, progress)),
         "open": _open(height, horizon),
     }
@@ -99,10 +98,6 @@ def tops(height: np.ndarray) -> list[np.ndarray]:
         half = len(levels[-1]) // 2
         levels.append(levels[-1].reshape(half, 2, half, 2).max(axis=(1, 3)))
     return levels
-
-
-def _steepness(height: np.ndarray) -> float:
-    return float(np.hypot(*(np.abs(np.diff(height, axis=axis)).max() / LAND_CELL for axis in (0, 1))))
 
 
 def _square(arguments: dict[str, Any]) -> np.ndarray:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from renderer.clouds.cloud_map import thickness_map
-from renderer.clouds.renderer import cloud_side, drift
+from renderer.clouds.frame_values import cloud_side, drift
 from renderer.clouds.world_scale import LAND_CELL
 from renderer.core.technique import Arrays
 from renderer.world.camera import rays

@@ -61,7 +61,6 @@ uniform vec3 globe_north;
 uniform vec3 globe_up;
 uniform float land_cell;          // m
 uniform float land_top;           // m, nothing of the land is higher
-uniform float land_steepness;     // greatest rise over run
 uniform float layer_highest;      // greatest thickness against the layer's
 uniform vec2 cloud_drift;         // m, of the map with the wind
 uniform float cloud_side;         // m, of the map

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from renderer.clouds.cloud_map import thickness_map
-from renderer.clouds.renderer import cloud_side, drift, globe_axes
+from renderer.clouds.frame_values import cloud_side, drift, globe_axes
 from renderer.clouds.weather import round_site
 from renderer.clouds.world_scale import LAND_CELL
 from renderer.core.technique import Arrays
