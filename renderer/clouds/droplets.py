@@ -164,9 +164,11 @@ def _intensity(a: np.ndarray, b: np.ndarray, cosines: np.ndarray, share: np.ndar
     total = np.zeros_like(cosines)
     for start in range(0, len(share), 128):
         part = slice(start, start + 128)
-        first = (a[part] * scale) @ pi + (b[part] * scale) @ tau
-        second = (a[part] * scale) @ tau + (b[part] * scale) @ pi
-        total += share[part] @ (abs(first) ** 2 + abs(second) ** 2) / 2
+        # Real and imaginary parts apart: a product of complex with real arrays would make all of it complex.
+        rows = np.stack([a[part].real, a[part].imag, b[part].real, b[part].imag]) * scale
+        by_pi, by_tau = rows @ pi, rows @ tau
+        first, second = by_pi[:2] + by_tau[2:], by_tau[:2] + by_pi[2:]
+        total += share[part] @ (first**2 + second**2).sum(axis=0) / 2
     return total
 
 

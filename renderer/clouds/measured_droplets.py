@@ -10,15 +10,18 @@ import numpy as np
 from pydantic import Field
 
 from renderer.clouds.bows import bows
-from renderer.clouds.droplets import Distribution, Droplets, scattering, water_index
+from renderer.clouds.droplets import Distribution, Droplets, radii, scattering, water_index
 from renderer.clouds.legendre import share_within, values_of
 from renderer.clouds.phase_tables import FORWARD_ANGLE, SUN_RADIUS
-from renderer.core.errors import InputError
+from renderer.core.errors import InputError, LimitError
 from renderer.core.params import Model, param
 from renderer.core.quantity import Progress, Quantity, Values
 
 Nanometres = Annotated[float, Field(ge=100, le=20_000)]
 Index = tuple[Annotated[float, Field(ge=0.1, le=10)], Annotated[float, Field(ge=0, le=10)]]
+
+LARGEST = 1300
+"""Largest size parameter, circumference over wavelength: a minute of one core for each wavelength."""
 
 MOMENTS = 600
 """Legendre moments given; those beyond the series are 0."""
@@ -71,6 +74,10 @@ def _mie(arguments: MieArguments, files: Mapping[str, Path], progress: Progress)
     if given.indices and len(given.indices) != len(given.wavelengths):
         raise InputError("indices", "not one for each wavelength", f"{len(given.wavelengths)} pairs, or none for water")
     sizes = Droplets.model_construct(radius=given.radius, distribution=given.distribution, width=given.width)
+    largest = 2 * np.pi * radii(sizes)[0][-1] / (min(given.wavelengths) * 1e-9)
+    if largest > LARGEST:
+        raise LimitError("radius", f"its largest droplets have a size parameter of {largest:.0f}",
+                         f"at most {LARGEST}: smaller or more equal droplets, or longer waves")
     angles = angles_deg()
     arrays: dict[str, np.ndarray] = {"angle_deg": angles, "wavelength_nm": np.array(given.wavelengths)}
     columns: dict[str, list[float]] = {}

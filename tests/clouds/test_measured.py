@@ -34,6 +34,8 @@ def test_an_index_may_be_given_and_is_asked_for_beyond_the_table() -> None:
     assert door.measure("mie", given).arrays["ssa"][0] < 0.995
     with pytest.raises(InputError, match="table"):
         door.measure("mie", {"wavelengths": [1600.0]})
+    with pytest.raises(UmbrageError, match="size parameter"):
+        door.measure("mie", {"radius": 50.0, "width": 0.5})
     with pytest.raises(InputError, match="each wavelength"):
         door.measure("mie", {"wavelengths": [500.0, 600.0], "indices": [[1.33, 0.0]]})
 
