@@ -48,6 +48,8 @@ def add(commands: Any) -> None:
     command.add_argument("--combinations", action="store_true", help="of the named combinations of techniques instead")
     command.add_argument("--kinds", action="store_true", help="of shadow instead: each technique in views of one kind")
     command.add_argument("--slab", action="store_true", help="of light within a plane cloud instead (clouds)")
+    command.add_argument("--radiosity", action="store_true", help="of light between ground and clouds instead (clouds)")
+    command.add_argument("--rays", type=int, default=4096, help="of each point of its truth (with --radiosity)")
     command.add_argument("--photons", type=int, default=PHOTONS, help="of each slab's truth (with --slab)")
     command.add_argument("--moving", type=int, default=64, help="side of pictures whose sun moves (with --kinds), px")
     command.add_argument("--steps", type=int, default=16, help="of the moving sun (with --kinds)")
@@ -120,6 +122,10 @@ def study(given: argparse.Namespace) -> int:
         raise InputError("--frames", "cannot be negative", f"0 for no times, {FRAMES} for stated ones")
     if given.kinds:
         return kinds(given)
+    if given.radiosity:
+        from server import cli_radiosity
+
+        return cli_radiosity.study(given)
     if given.slab:
         return slab(given)
     with Session() as session:

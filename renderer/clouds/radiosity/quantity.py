@@ -1,4 +1,4 @@
-"""The quantity `radiosity`: light bouncing between two level planes that are cut to discs."""
+"""The quantity `radiosity`: light between two level planes cut to discs, or between relief and a level cloud."""
 
 from __future__ import annotations
 
@@ -9,9 +9,13 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import Field
 
-from renderer.clouds.radiosity.measured import exchange_of, two_planes
+from renderer.clouds.radiosity.bases import HALF
+from renderer.clouds.radiosity.measured import by_matrices, exchange_of, on_grid, radii
+from renderer.clouds.radiosity.measured_relief import level_basis, over_relief
+from renderer.clouds.radiosity.two_planes import TwoPlanes, solve
+from renderer.core.errors import InputError
 from renderer.core.params import Model, param
-from renderer.core.quantity import Progress, Quantity, Values
+from renderer.core.quantity import InputFile, Progress, Quantity, Values
 
 Radius = Annotated[float, Field(ge=0.5, le=64)]
 
@@ -67,24 +71,37 @@ class RadiosityArguments(Model):
         le=64,
         source="Belcour 2009, section 5.2.1",
     )
-    technique: Literal["exact", "fft", "three_level"] = param(
-        "exact", label="Technique", help="Quadrature over the radius, or a technique of the slot `bounce`.", cost="host"
+    technique: Literal["exact", "fft", "three_level", "transfer"] = param(
+        "exact",
+        label="Technique",
+        help="Quadrature over the radius, of level planes alone, or a technique of the slot `bounce`.",
+        cost="host",
     )
     reading: Literal["texels", "taps", "discs"] = param(
         "taps", label="Footprints", help="How the three levels of `three_level` are read.", cost="host"
+    )
+    basis: Literal["object", "solid_angle", "haar"] = param(
+        "haar", label="Basis", help="Functions of `transfer`.", cost="host", source="Belcour 2009, section 5.2.2"
+    )
+    coefficients: Literal[15, 64, 256] = param(
+        256, label="Coefficients", help="Of `transfer`.", unit="count", cost="host", source="Belcour 2009, annex A.2"
     )
 
 
 def _radiosity(arguments: RadiosityArguments, files: Mapping[str, Path], progress: Progress) -> Values:
     given = arguments
+    if "terrain" in files:
+        return over_relief(given, files["terrain"], progress)
+    if given.technique == "transfer" and max(given.radii) > HALF:
+        raise InputError(
+            "radii",
+            f"reach beyond the square of transfer, {HALF:g} distances to each side",
+            f"at most {HALF:g}, or another technique",
+        )
     arrays: dict[str, np.ndarray] = {}
     for k, radius in enumerate(given.radii):
         progress(k / len(given.radii), f"discs of radius {radius:g}")
-
-        def exchange(radius: float = radius):
-            return exchange_of(given.technique, radius, given.reading)
-
-        found = two_planes(given.technique, given.ground_albedo, given.cloud_albedo, radius, given.bounces, exchange)
+        found = _sums(given, radius)
         name = f"Rc{radius:g}"
         arrays |= {
             f"r_over_H_{name}": found.radii,
@@ -110,9 +127,18 @@ def _radiosity(arguments: RadiosityArguments, files: Mapping[str, Path], progres
     return Values(arrays, tuple(notes))
 
 
+def _sums(given: RadiosityArguments, radius: float) -> TwoPlanes:
+    planes = given.ground_albedo, given.cloud_albedo, radius, given.bounces
+    if given.technique == "exact":
+        return solve(*planes, radii(radius))
+    if given.technique == "transfer":
+        return by_matrices(level_basis(given.basis, given.coefficients), *planes)
+    return on_grid(exchange_of(given.technique, radius, given.reading), *planes)
+
+
 RADIOSITY = Quantity(
     title="Radiosity between ground and cloud",
-    help="Light that bounces between level ground and a level cloud base, both cut to discs, after each bounce.",
+    help="Light that bounces between the ground, level or a terrain, and a level cloud base, after each bounce.",
     arguments=RadiosityArguments,
     function=_radiosity,
     units={
@@ -122,13 +148,20 @@ RADIOSITY = Quantity(
         "err_ground_Rc*, err_cloud_Rc*": "ratio to endless planes after as many bounces, less 1; [bounce, radius]",
         "exact_ground_cum, exact_cloud_cum": "endless planes, after each bounce",
         "endless_ground, endless_cloud": "endless planes, all bounces",
+        "ground_cum, cloud_cum": "the same over a terrain; [bounce, row, column], row 0 in the north",
+        "x_m, y_m": "m, east and north of the terrain's middle",
+        "elevation_m": "m above the lowest point, mean of a cell",
     },
     technique="as asked: exact (Gauss-Legendre over the radius, the azimuth in closed form), fft (exact kernel over "
-    "square cells of a quarter of the distance), three_level (mip levels of H, 2H and 8H)",
+    "square cells of a quarter of the distance), three_level (mip levels of H, 2H and 8H), transfer (matrices "
+    "in a basis on a square of 32 distances, over relief by rays)",
     source="Belcour 2009, sections 5.1.2, 5.2.2 and annex A.1; Bouthors, Neyret and Lefebvre 2006 (three levels)",
+    files=(InputFile("terrain", "elevation model under the clouds, for fft, three_level and transfer"),),
     error={
         "exact": "1e-13 of each sum",
         "fft": "1e-3 of each sum inside the rim's last cell",
         "three_level": "0.03 of each sum before the rim, much more at it: the technique's own",
+        "transfer": "0.3 % in the inner half of level discs of 16 (256 coefficients; 2.4 % of 8); over relief 3 % of "
+        "a cell's mean",
     },
 )

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
-from renderer.core.errors import InvalidDocument
+from renderer.clouds.radiosity import measured_relief
+from renderer.clouds.radiosity.relief import cast
+from renderer.core.errors import InputError, InvalidDocument
 from renderer.study import measure as door
 
 
@@ -78,3 +82,53 @@ def test_bad_arguments_are_refused_by_name(field: str, value: object) -> None:
     with pytest.raises(InvalidDocument) as refused:
         door.measure("radiosity", {field: value})
     assert refused.value.errors[0].field.startswith(field)
+
+
+@pytest.mark.parametrize(("basis", "most"), [("object", 5e-3), ("solid_angle", 1e-2), ("haar", 5e-3)])
+def test_matrices_are_near_the_quadrature(basis: str, most: float) -> None:
+    asked = {"radii": [16], "bounces": 4, "technique": "transfer", "basis": basis}
+    exact = door.measure("radiosity", {**asked, "technique": "exact"}).arrays
+    found = door.measure("radiosity", asked).arrays
+    for side in ("ground", "cloud"):
+        distance = np.abs(found[f"err_{side}_Rc16"] - exact[f"err_{side}_Rc16"])[:, :80].max()
+        assert distance < most
+
+
+@pytest.fixture
+def valley(tmp_path: Path) -> Path:
+    """A round plain of radius 2 km among highlands 700 m above it."""
+    places = np.linspace(-16_000, 16_000, 161)
+    far = np.hypot(places[:, None], places[None, :])
+    path = tmp_path / "valley.npz"
+    np.savez(path, elevation=700 * np.clip((far - 2000) / 2000, 0, 1), cell_size=np.array([200.0, 200.0]))
+    return path
+
+
+def test_over_a_terrain_relief_counts(valley: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(measured_relief, "cast", lambda nodes, progress: cast(nodes, 64, progress))
+    asked = {"distance": 1000.0, "bounces": 3, "ground_albedo": 0.6, "basis": "object"}
+    level, relief = (
+        door.measure("radiosity", {**asked, "technique": technique}, {"terrain": valley}).arrays
+        for technique in ("fft", "transfer")
+    )
+    assert relief["ground_cum"].shape == level["cloud_cum"].shape == (3, 64, 64)
+    assert relief["y_m"][0] == -relief["y_m"][-1] == pytest.approx(15_750)
+    middle = (-1, 32, 32)
+    assert relief["elevation_m"][32, 32] == pytest.approx(0, abs=20)
+    assert relief["elevation_m"][2, 2] == pytest.approx(700, abs=20)
+    assert relief["ground_cum"][middle] < level["ground_cum"][middle] - 0.01, "the walls hide cloud"
+    assert np.all(np.diff(relief["ground_cum"], axis=0) > 0)
+
+
+def test_what_relief_does_not_allow_is_refused(valley: Path, tmp_path: Path) -> None:
+    for arguments, field in (
+        ({}, "technique"),
+        ({"technique": "fft", "ground_albedo": 1, "cloud_albedo": 1}, "ground_albedo"),
+        ({"technique": "transfer", "distance": 600.0}, "elevation"),
+    ):
+        with pytest.raises(InputError) as refused:
+            door.measure("radiosity", arguments, {"terrain": valley})
+        assert refused.value.field == field
+    with pytest.raises(InputError) as refused:
+        door.measure("radiosity", {"technique": "transfer", "radii": [20]})
+    assert refused.value.field == "radii"
