@@ -81,8 +81,8 @@ def _edges(ring: Ring) -> tuple[float, float]:
     blocks = np.random.default_rng(11).random((13, 13)) < 0.5
     cloud = np.kron(blocks, np.ones((5, 5)))[:GRID, :GRID].astype(np.float64)
     albedo, shine = np.full((GRID, GRID), 0.3), 0.9 * cloud
-    fields = [field[None] for field in (0 * albedo, cloud, albedo, shine)]
-    exact = cloud + shine * bounce(flat_exchange(GRID, 0.5), *fields, 40)[1][0]
+    fields = np.stack([0 * albedo, cloud, albedo, shine])[:, None]
+    exact = cloud + shine * bounce(flat_exchange(GRID, 0.5), fields[0], fields[1], fields[2], fields[3], 40)[1][0]
     inner = (slice(GRID // 4, 3 * GRID // 4),) * 2
     errors = []
     for basis in (object_basis(15), haar_basis(largest_wavelets(exact[None], 256, RENDERED))):

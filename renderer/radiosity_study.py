@@ -87,10 +87,10 @@ def cases(rays: int, cache: Cache, tell: Tell) -> Iterator[Case]:
         level = not scene.nodes.any()
         arguments = {"scene": scene.name, "rays": 0 if level else rays}
         truth = Solution(**bake_now(Bake("radiosity_truth", bake_truth, arguments), cache))
-        coarse = [_coarse(field) for field in (scene.albedo, scene.reflectance, scene.cloud)]
+        albedo, shine, cloud = (_coarse(field) for field in (scene.albedo, scene.reflectance, scene.cloud))
         hits = None if level else cast(scene.nodes, max(rays // 2, 64))
-        cover = (coarse[2] > 0).astype(np.float64)
-        yield Case(scene, truth, *coarse, hits, Detail(coarse[0], cover, edge=True))
+        detail = Detail(albedo, (cloud > 0).astype(np.float64), edge=True)
+        yield Case(scene, truth, albedo, shine, cloud, hits, detail)
 
 
 def _coarse(field: np.ndarray) -> np.ndarray:
@@ -110,7 +110,7 @@ def off(found: np.ndarray, right: np.ndarray, over: np.ndarray | None = None) ->
 def flat_exchanges() -> dict[str, Exchange]:
     """Half-bounces of the techniques that know level planes alone."""
     levels = {
-        f"three_level ({reading})": ThreeLevelExchange(GRID, 2 * HALF / GRID, 1.0, reading)  # type: ignore[arg-type]
+        f"three_level ({reading})": ThreeLevelExchange(GRID, 2 * HALF / GRID, 1.0, reading)
         for reading in ("texels", "taps", "discs")
     }
     return {"fft": flat_exchange(GRID, 2 * HALF / GRID), **levels}

@@ -55,11 +55,11 @@ def over_relief(given: Any, terrain: Path, progress: Progress) -> Values:
             if given.technique == "fft"
             else ThreeLevelExchange(GRID, CELL, 1.0, given.reading)
         )
-        fields = [field[None] for field in (0 * one, one, given.ground_albedo * one, given.cloud_albedo * one)]
-        sums = [
-            tuple(side[0] for side in bounce(exchange, *fields, 2 * count, tail=False))  # type: ignore[misc]
-            for count in range(1, given.bounces + 1)
-        ]
+        albedo, shine = given.ground_albedo * one[None], given.cloud_albedo * one[None]
+        sums = []
+        for count in range(1, given.bounces + 1):
+            found = bounce(exchange, 0 * albedo, one[None], albedo, shine, 2 * count, tail=False)
+            sums.append((found[0][0], found[1][0]))
     along = ((np.arange(GRID) + 0.5) * CELL - HALF) * given.distance
     blocks = nodes[:-1, :-1].reshape(GRID, (NODES - 1) // GRID, GRID, -1).mean(axis=(1, 3))
     return Values(
