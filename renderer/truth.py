@@ -27,11 +27,14 @@ from renderer.world.state import SceneState
 POSITIONS = 16
 """Sub-pixel positions of a reference, and of the converged picture that is compared with it."""
 
-SECONDS_PER_RAY = 160e-6
-"""What a ray with its shadow rays takes on two cores, to announce the cost."""
+SECONDS_PER_RAY: Mapping[str, float] = {"forest": 160e-6, "clouds": 1000e-6}
+"""What a ray with all that it asks for takes on two cores, to announce the cost."""
 
-NOT_THE_WORLD = ("version", "quality", "view", "time")
-"""Fields of a state, beside its slots, that change no reference."""
+NOT_THE_WORLD: Mapping[str, tuple[str, ...]] = {
+    "forest": ("version", "quality", "view", "time"),
+    "clouds": ("version", "quality", "view"),
+}
+"""Fields of a state, beside its slots, that change no reference: time is the world's where clouds drift."""
 
 Judge = Literal["combination", "share", "shadow", "matter"]
 """What a picture is judged for: `combination` against the full physical reference, `share` against the
@@ -74,9 +77,10 @@ def truth_bake(
     """
     found = phenomenon(state.scene)
     slots = {slot.name for slot in found.slots}
-    document = state.model_dump(mode="json", exclude={*NOT_THE_WORLD, *slots})
+    document = state.model_dump(mode="json", exclude={*NOT_THE_WORLD[state.scene], *slots})
     options = OPTIONS[state.scene](state, judge, cast)
-    inputs = tuple(bake for bake in found.bakes(state) if bake.name in found.world_needs)
+    needed = [bake for bake in found.bakes(state) if bake.name in found.world_needs]
+    inputs = tuple(needed if found.world_bakes is None else found.world_bakes(state))
     arguments = {
         "state": document,
         "size": [width, height],
@@ -84,7 +88,8 @@ def truth_bake(
         "options": options,
         "code": code_of_reference(state.scene),
     }
-    return Bake("reference", bake_truth, arguments, inputs, seconds=width * height * POSITIONS * SECONDS_PER_RAY)
+    seconds = width * height * POSITIONS * SECONDS_PER_RAY[state.scene]
+    return Bake("reference", bake_truth, arguments, inputs, seconds=seconds)
 
 
 @functools.cache
@@ -123,7 +128,8 @@ def bake_truth(arguments: dict[str, Any], inputs: dict[str, Arrays], progress: P
         inputs: the bakes that the world needs.
 
     Returns:
-        `linear`, `once` (H, W, 4), `backdrop` (H, W, 3), `standard_error` (), `seconds` (), as in `Truth`.
+        `linear`, `once` (H, W, 4), `backdrop` (H, W, 3), `standard_error` (), `seconds` (), as in `Truth`; of the
+        clouds `regions` (H, W, 3), too, how much of a pixel meets space, cloud and ground first.
     """
     found = phenomenon(arguments["state"]["scene"])
     state: Any = validate(found.state, arguments["state"])
@@ -201,8 +207,49 @@ def _forest(
     }
 
 
-OPTIONS: dict[str, Callable[[Any, Judge, Sequence[str] | None], dict[str, Any]]] = {"forest": _forest_options}
+def _clouds_options(state: Any, judge: Judge, cast: Sequence[str] | None) -> dict[str, Any]:
+    """Clouds have one truth, whatever is judged."""
+    return {}
+
+
+def _clouds(
+    world: Mapping[str, Any], looking: Any, positions: np.ndarray, options: Mapping[str, Any], progress: Progress
+) -> Arrays:
+    """Trace the clouds: the pixels' centres first, whose picture alone is what one sample a pixel shows."""
+    from renderer.reference.clouds import Options, render
+    from renderer.reference.clouds_world import CloudsWorld
+
+    clouds, share = CloudsWorld(**world), 1 / len(positions)
+    first = render(clouds, looking, positions[:1], Options(**options), lambda d, words: progress(d * share, words))
+    if len(positions) == 1:
+        linear, error, regions, seconds = first.radiance, first.standard_error, first.regions, first.seconds
+    else:
+        rest = render(
+            clouds,
+            looking,
+            positions[1:],
+            Options(**options, seed=Options.seed + 1),
+            lambda done, words: progress(share + done * (1 - share), words),
+        )
+        linear = share * first.radiance + (1 - share) * rest.radiance
+        error = np.hypot(share * first.standard_error, (1 - share) * rest.standard_error)
+        regions = share * first.regions + (1 - share) * rest.regions
+        seconds = first.seconds + rest.seconds
+    mean = float(linear[..., :3].mean())
+    return {
+        "linear": linear,
+        "once": first.radiance,
+        "regions": regions.astype(np.float32),
+        "standard_error": np.array(float(np.sqrt(np.mean(error**2))) / mean if mean > 0 else 0.0),
+        "seconds": np.array(seconds),
+    }
+
+
+OPTIONS: dict[str, Callable[[Any, Judge, Sequence[str] | None], dict[str, Any]]] = {
+    "forest": _forest_options,
+    "clouds": _clouds_options,
+}
 """Options of each phenomenon's reference."""
 
-RENDER: dict[str, Callable[..., Arrays]] = {"forest": _forest}
+RENDER: dict[str, Callable[..., Arrays]] = {"forest": _forest, "clouds": _clouds}
 """How each phenomenon's world becomes a reference picture."""

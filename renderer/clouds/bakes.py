@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from renderer.clouds.air import bake_air
 from renderer.clouds.cloud_map import bake_fields
 from renderer.clouds.globe import bake_globe
 from renderer.clouds.land import bake_land
+from renderer.clouds.phase.mie import Mie
 from renderer.core.params import bake_arguments
 from renderer.core.technique import Bake
 from renderer.world.sky import bake_sky
@@ -39,6 +40,18 @@ def land_bake(state: CloudsState) -> Bake:
 def fields_bake(state: CloudsState) -> Bake:
     """What the cloud map is made of."""
     return Bake("fields", bake_fields, bake_arguments(state.clouds), version=7, seconds=3)
+
+
+def droplets_bake(state: CloudsState) -> Bake:
+    """The phase function of the droplets that are there, whatever technique draws them."""
+    phase: Any = state.techniques()["phase"]
+    drawn: Bake = (phase if phase.kind == "mie" else Mie()).phase_bake()
+    return drawn
+
+
+def world_bakes(state: CloudsState) -> list[Bake]:
+    """What the world is made of, for whoever draws it without the techniques."""
+    return [globe_bake(), land_bake(state), fields_bake(state), droplets_bake(state)]
 
 
 def bakes(state: CloudsState) -> list[Bake]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from renderer.clouds.bakes import bakes
+from renderer.clouds.bakes import bakes, world_bakes
 from renderer.clouds.presets import PRESETS
 from renderer.clouds.probe import probe
 from renderer.clouds.renderer import CloudsRenderer
@@ -77,6 +77,7 @@ PHENOMENON = Phenomenon(
     open=CloudsRenderer,
     world=world_arrays,
     world_needs=NEEDS,
+    world_bakes=world_bakes,
     metered_light=_metered_light,
     probe=probe,
     place=1,

@@ -123,6 +123,8 @@ class Phenomenon:
         world: `(state, arrays of the bakes by name) -> plain arrays and numbers`: what is drawn, whatever the
             techniques, for a reference that shares no code with them.
         world_needs: names of the bakes that `world` reads.
+        world_bakes: `state -> bakes that its world reads`, where techniques do not ask for all of them; else those of
+            `bakes` that `world_needs` names.
         metered_light: `(state, arrays of the bakes by name) -> W m-2`: how much light there is, for the exposure.
         probe: `(state, arrays of the bakes by name, x, y, (width, height)) -> facts` about a point of the picture, as
             JSON values.
@@ -142,6 +144,7 @@ class Phenomenon:
     probe: Callable[[Any, Mapping[str, Arrays], float, float, tuple[int, int]], dict[str, Any]]
     combinations: Mapping[str, Preset] = field(default_factory=dict)
     place: int = 0
+    world_bakes: Callable[[Any], list[Bake]] | None = None
 
 
 @dataclass(frozen=True)
