@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import os
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -30,3 +32,37 @@ def numpy_errors_raise() -> Iterator[None]:
 def root() -> Path:
     """Folder of the checkout."""
     return Path(__file__).parent.parent
+
+
+@pytest.fixture
+def spoil(monkeypatch: pytest.MonkeyPatch) -> Callable[[str, str, str], AbstractContextManager[None]]:
+    """Makes a mistake in a shader while entered: `with spoil(file, right, wrong): ...`."""
+    # Imported here, so that tests without shaders need not wait for them.
+    from renderer.clouds import program as clouds
+    from renderer.forest import program as forest
+    from renderer.gl import source
+
+    composed = (clouds._composed, forest._composed, forest.pass_source)
+
+    @contextmanager
+    def spoiled(file: str, right: str, wrong: str) -> Iterator[None]:
+        read = source._read
+
+        def reads(root: Any, name: str) -> tuple[tuple[str, ...], tuple[str, ...]]:
+            raw, clean = read(root, name)
+            if name != file:
+                return raw, clean
+            text = "\n".join(raw)
+            assert text.count(right) == 1, f"{file} has not exactly one {right!r}"
+            lines = tuple(text.replace(right, wrong).split("\n"))
+            return lines, tuple("" if line.lstrip().startswith("//") else line for line in lines)
+
+        with monkeypatch.context() as patch:
+            patch.setattr(source, "_read", reads)
+            for kept in composed:
+                kept.cache_clear()
+            yield
+        for kept in composed:
+            kept.cache_clear()
+
+    return spoiled

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import AbstractContextManager, contextmanager
+from contextlib import AbstractContextManager
 from types import SimpleNamespace
 from typing import Any
 
@@ -16,7 +16,6 @@ from renderer.core.cache import Cache
 from renderer.core.params import defines, uniform_declarations, uniforms
 from renderer.core.registry import glsl_file
 from renderer.core.technique import Arrays, Bake
-from renderer.gl import source
 from renderer.gl.context import GL
 from renderer.gl.probe import probe
 from renderer.gl.thread import GLThread
@@ -107,27 +106,3 @@ def _texture(gl: GL, array: np.ndarray) -> Any:
     """A picture (H, W, C) or a volume (K, J, I, C) in float32."""
     made = gl.texture3d if array.ndim == 4 else gl.texture2d
     return made(np.asarray(array, np.float32))
-
-
-@pytest.fixture
-def spoil(monkeypatch: pytest.MonkeyPatch) -> Spoil:
-    """Makes a mistake in a shader while entered: `with spoil(file, right, wrong): ...`."""
-
-    @contextmanager
-    def spoiled(file: str, right: str, wrong: str) -> Iterator[None]:
-        read = source._read
-
-        def reads(root: Any, name: str) -> tuple[tuple[str, ...], tuple[str, ...]]:
-            raw, clean = read(root, name)
-            if name != file:
-                return raw, clean
-            text = "\n".join(raw)
-            assert text.count(right) == 1, f"{file} has not exactly one {right!r}"
-            lines = tuple(text.replace(right, wrong).split("\n"))
-            return lines, tuple("" if line.lstrip().startswith("//") else line for line in lines)
-
-        with monkeypatch.context() as patch:
-            patch.setattr(source, "_read", reads)
-            yield
-
-    return spoiled

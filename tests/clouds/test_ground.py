@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-from renderer.clouds import program
 from renderer.clouds.land import tops
 from renderer.clouds.renderer import CloudsRenderer
 from renderer.clouds.state import CloudsState
@@ -90,9 +89,7 @@ def test_a_scout_that_goes_too_far_is_found(
     session: Session, state: CloudsState, walked: np.ndarray, spoil: Callable
 ) -> None:
     with spoil("clouds/ground.glsl", "0.985 * nearest", "1.2 * nearest"):
-        program._composed.cache_clear()
         assert missed(session, state, walked) > 0.05
-    program._composed.cache_clear()
 
 
 def test_no_node_is_higher_than_the_tops_above_it() -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import AbstractContextManager, contextmanager
+from contextlib import AbstractContextManager
 from typing import Any
 
 import numpy as np
@@ -16,7 +16,6 @@ from renderer.forest import program
 from renderer.forest.renderer import ForestRenderer
 from renderer.forest.state import ForestState, Ground
 from renderer.forest.technique import ForestTechnique
-from renderer.gl import source
 from renderer.gl.context import GL
 from renderer.gl.probe import probe
 from renderer.gl.program import AnyTexture
@@ -121,34 +120,6 @@ def _texture(gl: GL, array: np.ndarray) -> AnyTexture:
     if array.ndim == 4:
         return gl.texture3d(array, "linear", ("repeat", "repeat", "clamp"))
     return gl.texture2d(array.astype(np.float32), wrap="repeat")
-
-
-@pytest.fixture
-def spoil(monkeypatch: pytest.MonkeyPatch) -> Spoil:
-    """Makes a mistake in a shader while entered: `with spoil(file, right, wrong): ...`."""
-
-    @contextmanager
-    def spoiled(file: str, right: str, wrong: str) -> Iterator[None]:
-        read = source._read
-
-        def reads(root: Any, name: str) -> tuple[tuple[str, ...], tuple[str, ...]]:
-            raw, clean = read(root, name)
-            if name != file:
-                return raw, clean
-            text = "\n".join(raw)
-            assert text.count(right) == 1, f"{file} has not exactly one {right!r}"
-            lines = tuple(text.replace(right, wrong).split("\n"))
-            return lines, tuple("" if line.lstrip().startswith("//") else line for line in lines)
-
-        with monkeypatch.context() as patch:
-            patch.setattr(source, "_read", reads)
-            program._composed.cache_clear()
-            program.pass_source.cache_clear()
-            yield
-        program._composed.cache_clear()
-        program.pass_source.cache_clear()
-
-    return spoiled
 
 
 @pytest.fixture(scope="session")
