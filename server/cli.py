@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from renderer.core.errors import InputError, InvalidDocument, UmbrageError
 from server import (
     cli_asset,
+    cli_climb,
     cli_distance,
     cli_draw,
     cli_leaves,
@@ -32,6 +33,7 @@ def parser(arguments: Sequence[str]) -> argparse.ArgumentParser:
     cli_serve.add(commands)
     cli_draw.add(commands)
     cli_asset.add(commands)
+    cli_climb.add(commands)
     cli_distance.add(commands)
     cli_measure.add(commands, "measure" in arguments)
     cli_sunlight.add(commands, "sunstudy" in arguments)

@@ -37,6 +37,7 @@ def world_values(state: CloudsState, baked: Mapping[str, Arrays]) -> dict[str, A
         "cloud_drift": drift(state),
         "cloud_side": cloud_side(state),
         "cloud_repeats": 0.0 if state.clouds.kind == "asset" and not state.clouds.repeats else 1.0,
+        "cloud_widens": float(state.clouds.kind == "procedural"),
         "sun_direction": direction(state.sun),
         "sun_irradiance": (SOLAR_CONSTANT,) * 3,
     }

@@ -65,6 +65,7 @@ uniform float layer_highest;      // greatest thickness against the layer's
 uniform vec2 cloud_drift;         // m, of the map with the wind
 uniform float cloud_side;         // m, of the map
 uniform float cloud_repeats;      // 1 where it goes on beyond its edges
+uniform float cloud_widens;       // 1 where it may be laid wider far away
 uniform vec3 sun_direction;
 uniform vec3 sun_irradiance;      // above the air, W m-2
 uniform float pixel_angle;        // rad, width of a pixel in perspective

@@ -18,7 +18,7 @@ from renderer.gl.program import AnyTexture
 
 def halved(levels: np.ndarray) -> list[np.ndarray]:
     """The coarser levels of a picture (H, W, C): means of 2 x 2 texels."""
-    found = []
+    found, levels = [], levels.astype(np.float32)
     while min(levels.shape[:2]) > 1:
         rows, columns = levels.shape[0] // 2, levels.shape[1] // 2
         even, odd = levels[: 2 * rows : 2], levels[1 : 2 * rows : 2]

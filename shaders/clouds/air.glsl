@@ -53,7 +53,7 @@ vec3 air_extinction(float altitude, out vec3 rayleigh, out float mie) {
 }
 
 // The part of a ray that lies in the air, and how its points are spread: close where light changes along it. From a camera low
-// in the air that is near by, where land stands before the sky: points lie by the cube of their share up to the horizon, the
+// in the air that is near by, where land stands before the sky: points lie by the square of their share up to the horizon, the
 // same on both sides of it, and evenly behind. From above it is where the ray comes nearest to the ground.
 struct AirRay {
     float start;  // m
@@ -66,7 +66,7 @@ struct AirRay {
 
 const float AIR_POWER = 2.5;
 const float AIR_LOW = 6000.0;                    // m, up to which a camera is low in the air
-const float AIR_NEAR = 1.5e5, AIR_SPLIT = 0.75;  // m, least length of the part spread by cubes; its share of the points
+const float AIR_NEAR = 8.0e4, AIR_SPLIT = 2.0 / 3.0; // m, least length of the part spread by squares; its share of the points
 
 // stop: m, where the ground ends the ray; NEVER where it does not.
 AirRay air_ray(Path path, float stop) {
@@ -84,7 +84,7 @@ AirRay air_ray(Path path, float stop) {
 float air_distance(AirRay ray, float share) {
     if (ray.near) {
         float s = min(share / AIR_SPLIT, 1.0);
-        return ray.lowest * s * s * s + (ray.end - ray.lowest) * max(share - AIR_SPLIT, 0.0) / (1.0 - AIR_SPLIT);
+        return ray.lowest * s * s + (ray.end - ray.lowest) * max(share - AIR_SPLIT, 0.0) / (1.0 - AIR_SPLIT);
     }
     float s = mix(-ray.before, ray.behind, share);
     return ray.lowest + sign(s) * pow(abs(s), AIR_POWER);
@@ -92,7 +92,7 @@ float air_distance(AirRay ray, float share) {
 
 float air_share(AirRay ray, float t) {
     if (ray.near) {
-        float s = pow(clamp(t / max(ray.lowest, 1.0), 0.0, 1.0), 1.0 / 3.0);
+        float s = sqrt(clamp(t / max(ray.lowest, 1.0), 0.0, 1.0));
         return AIR_SPLIT * s + (1.0 - AIR_SPLIT) * clamp((t - ray.lowest) / max(ray.end - ray.lowest, 1.0), 0.0, 1.0);
     }
     float from = clamp(t, ray.start, ray.end) - ray.lowest;

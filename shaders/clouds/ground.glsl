@@ -51,7 +51,8 @@ float ground_distance(Path path, vec3 origin, vec3 direction, float footprint, f
         if (clear || fine) t = until;
         level = clear ? min(level + 1, LAND_COARSEST) : max(level - 1, 0);
     }
-    return min(found, end);
+    // A ray that still hugs the land when its steps are spent meets it there: sky would show through the foot of mountains.
+    return min(t < stop ? min(found, t) : found, end);
 }
 
 // Unit normal of the land at a place, in the site's axes turned to the point's own up.

@@ -10,20 +10,46 @@ struct Cover {
     vec2 slope;      // rise of the upper side over run, to the east and to the north
 };
 
+// The map alone: thickness as a share of the layer's, and how it grows to the east and to the north per metre; m from its middle.
+vec3 map_at(vec2 from_middle, float footprint) {
+    vec2 at = from_middle / cloud_side;
+    float level = log2(max(footprint * float(textureSize(cloud_map, 0).x) / cloud_side, 1.0));
+    vec4 found = textureLod(cloud_map, at + 0.5, level);
+    float inside = cloud_repeats > 0.5 ? 1.0 : float(max(abs(at.x), abs(at.y)) < 0.5);
+    return inside * vec3(mix(max(found.r, 0.0), found.a, min(level, 1.0)), found.gb);
+}
+
+// Share of the layer that the weather systems leave. half_place: m from the site over the planet's diameter.
+float weather_at(vec2 half_place, float stretched, float footprint) {
+    vec2 at = half_place * inversesqrt(stretched); // Lambert's projection of the whole sphere, -1 to 1
+    float texel = 4.0 * planet_radius / float(textureSize(cloud_systems, 0).x);
+    return textureLod(cloud_systems, 0.5 + 0.5 * at, log2(max(footprint / texel, 1.0))).r;
+}
+
 // place: m from the site. footprint: m, over which it is seen.
 Cover cover_at(vec2 place, float footprint) {
-    vec2 at = (place - cloud_drift) / cloud_side;
-    float texel = cloud_side / float(textureSize(cloud_map, 0).x);
     vec2 half_place = place / (2.0 * planet_radius);
     float stretched = 1.0 + dot(half_place, half_place); // of the stereographic projection
-    float level = log2(max(footprint * stretched / texel, 1.0));
-    vec4 found = textureLod(cloud_map, at + 0.5, level);
-    float share = mix(max(found.r, 0.0), found.a, min(level, 1.0));
-    float inside = cloud_repeats > 0.5 ? 1.0 : float(max(abs(at.x), abs(at.y)) < 0.5);
-    float wide = 4.0 * planet_radius / float(textureSize(cloud_systems, 0).x);
-    vec2 weather = half_place * inversesqrt(stretched); // Lambert's projection of the whole sphere, -1 to 1
-    float systems = textureLod(cloud_systems, 0.5 + 0.5 * weather, log2(max(footprint / wide, 1.0))).r;
-    return Cover(layer_thickness * inside * systems * share, layer_thickness * inside * systems * found.gb);
+    vec3 found = map_at(place - cloud_drift, footprint * stretched);
+    found *= layer_thickness * weather_at(half_place, stretched, footprint);
+    return Cover(found.x, found.yz);
+}
+
+const float WIDER = 13.0;                       // how much wider the map is laid for what is far
+const float WIDE_FROM = 0.007, WIDE_TO = 0.035; // footprints, of the map's side
+
+// The same as the eye sees it. From so far that the map's period would show, clouds are those of the map laid wider and turned.
+Cover cover_seen(vec2 place, float footprint) {
+    vec2 half_place = place / (2.0 * planet_radius), from_middle = place - cloud_drift;
+    float stretched = 1.0 + dot(half_place, half_place);
+    vec3 found = map_at(from_middle, footprint * stretched);
+    vec2 turned = vec2(0.8 * from_middle.x - 0.6 * from_middle.y, 0.6 * from_middle.x + 0.8 * from_middle.y);
+    float wide = cloud_widens * smoothstep(WIDE_FROM, WIDE_TO, footprint / cloud_side);
+    // Farther still its period would show too: its mean is left, and the weather.
+    float seen = footprint * stretched / WIDER, even = exp2(6.0 * smoothstep(WIDE_FROM, WIDE_TO, seen / cloud_side));
+    found = mix(found, vec3(map_at(turned / WIDER, seen * even).x, 0.0, 0.0), wide);
+    found *= layer_thickness * weather_at(half_place, stretched, footprint);
+    return Cover(found.x, found.yz);
 }
 
 float slab_diffuse_share(float optical_depth) {

@@ -5,6 +5,11 @@ struct Shade {
     vec3 sky;     // share of the sky's light
 };
 
+// Width of a pixel at a point, m, over which a shadow is seen.
+float shade_footprint(vec3 point) {
+    return max(pixel_angle * distance(point, camera_origin), 1.0);
+}
+
 // What of a layer that thick (m) stands above an altitude (m): summits rise into it and through it.
 float above_point(float thickness, float altitude) {
     return clamp(layer_base + thickness - altitude, 0.0, thickness);

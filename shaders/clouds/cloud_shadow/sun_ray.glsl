@@ -9,6 +9,6 @@ Shade cloud_shadow(vec3 point, float altitude, float mu, float overhead) {
     float square = rise * (2.0 * r + rise), level = r * max(mu, 0.0);
     float way = square / max(level + sqrt(level * level + square), 1.0);
     vec3 met = point + way * sun_direction;
-    float crossed = above_point(cover_at(place_of(met), 1.0).thickness, altitude);
+    float crossed = above_point(cover_at(place_of(met), shade_footprint(point)).thickness, altitude);
     return shade_under(above_point(overhead, altitude), crossed, shade_slant(dot(up_at(met), sun_direction), max(crossed, 1.0e-3)));
 }

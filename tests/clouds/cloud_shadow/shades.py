@@ -25,6 +25,9 @@ DECLARED = "\n".join(
         "vec2 cloud_drift",
         "float cloud_side",
         "float cloud_repeats",
+        "float pixel_angle",
+        "vec3 camera_origin",
+        "float cloud_widens",
         "vec3 sun_direction",
         "sampler2D cloud_map",
         "sampler2D cloud_systems",
@@ -54,6 +57,9 @@ def shade(
         "cloud_drift": (0.0, 0.0),
         "cloud_side": SIDE,
         "cloud_repeats": 1.0,
+        "pixel_angle": 0.0,
+        "camera_origin": (0.0, 0.0, 0.0),
+        "cloud_widens": 0.0,
         "sun_direction": sun,
     }
     point = "vec3(x, 0.0, 0.0)"
