@@ -54,6 +54,8 @@ def run(folder: Path, photons: int, tell: Callable[[float, str], None]) -> str:
         "lobe": study.lobe_numbers(photons, cache, part(0.8, 0.9)),
         "droplets": study.droplet_numbers(part(0.9, 0.95)),
         "sphere": study.sphere_numbers(photons, part(0.95, 1.0)),
+        "contrast": study.contrast_numbers(),
+        "path": study.path_numbers(),
     }
     folder.mkdir(parents=True, exist_ok=True)
     with (folder / "results.jsonl").open("w", encoding="utf-8") as file:
@@ -96,6 +98,14 @@ def table(parts: dict[str, Lines], photons: int) -> str:
         "2,500 m "
         "(errata 001-18); and the share that all orders send back, 100 m of optical depth 8, in photons.",
         _sphere(parts["sphere"]),
+        "Fogbow against the cloud 8 degrees beside it, and the glory's first ring against the dark one outside it, "
+        "in order 1, "
+        "sun's disc averaged: 1 where a phase function knows neither.",
+        _rows(("phase function", "fogbow", "glory"),
+              [[line["phase"], f"{line['bow']:.2f}", f"{line['ring']:.2f}"] for line in parts["contrast"]]),
+        "Metres of a ray in 250 m of cloud by its angle at the top: a plane's go to infinity at the horizon.",
+        _rows(("angle", "plane", "sphere"),
+              [[f"{line['degrees']:g}°", f"{line['plane']:,.0f}", f"{line['sphere']:,.0f}"] for line in parts["path"]]),
     ]
     return "\n\n".join(sections) + "\n"
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from renderer.clouds.bows import bows
 from renderer.clouds.droplets import BANDS, Droplets, scattering, water_index
-from renderer.clouds.legendre import share_within, values_of
+from renderer.clouds.legendre import disc_moments, share_within, values_of
 from renderer.clouds.measured_slab import evaluate, model_of
 from renderer.clouds.phase_tables import FORWARD_ANGLE, SUN_RADIUS
 from renderer.clouds.slab import Slab, SlabModel, first_up, second_up
@@ -25,7 +25,7 @@ from renderer.core.registry import techniques
 from renderer.core.technique import Arrays, Bake
 from renderer.reference.cloud_photons import Scatterer
 from renderer.reference.cloud_shell import SPACE, Shell, trace_shell
-from renderer.reference.cloud_shell_single import plane_single, sphere_single
+from renderer.reference.cloud_shell_single import chord, plane_single, sphere_single
 from renderer.reference.cloud_slab import SlabPhotons, trace_slab
 
 Tell = Callable[[float, str], None]
@@ -49,6 +49,11 @@ INNER = 4
 ANGLES = np.radians(np.unique(np.concatenate([
     np.linspace(0, 15, 3001), np.linspace(15, 170, 3101), np.linspace(170, 180, 1001),
 ])))
+
+BESIDE = np.radians(8.0)
+"""Distance from the fogbow at which the cloud beside it is looked at, rad."""
+
+RAYLEIGH = np.array([1.0, 0.0, 0.1])
 
 HANSEN = Droplets(radius=5.6, width=1 / 3, distribution="gamma")
 """Effective radius 7 um, effective variance 0.1: the droplets of formulas a4's table."""
@@ -216,6 +221,29 @@ def droplet_numbers(tell: Tell) -> list[dict[str, Any]]:
                           "fogbow": float(np.degrees(seen.fogbow)),
                           "glory": [float(np.degrees(ring)) for ring in seen.glory[:3]]})
     return lines
+
+
+def contrast_numbers() -> list[dict[str, Any]]:
+    """How far fogbow and glory stand out of order 1 with each phase function, at 650 nm, the sun's disc averaged.
+
+    The bow against the mean of both sides, 8 degrees off; the first ring against the dark ring outside it.
+    """
+    mie = scattering(Droplets(), BANDS[0], water_index(BANDS[0]))["moments"]
+    rings = bows(mie, SUN_RADIUS)
+    away = np.array([rings.fogbow - BESIDE, rings.fogbow, rings.fogbow + BESIDE, rings.glory[0],
+                     (rings.glory[0] + rings.glory[1]) / 2])
+    lines = []
+    for name, moments in (("mie", mie), ("henyey_greenstein", mie[1] ** np.arange(300)), ("rayleigh", RAYLEIGH)):
+        inner, bow, outer, ring, dark = values_of(moments * disc_moments(len(moments), SUN_RADIUS), -np.cos(away))
+        lines.append({"phase": name, "bow": float(2 * bow / (inner + outer)), "ring": float(ring / dark)})
+    return lines
+
+
+def path_numbers() -> list[dict[str, Any]]:
+    """Length of a ray in a layer of 250 m at 2,500 m, in a plane and round the Earth, by its angle at the top."""
+    shell = Shell(6.35e6, 2500.0, 250.0, 1.0)
+    return [{"degrees": degrees, "plane": 250.0 / float(np.cos(np.radians(degrees))),
+             "sphere": chord(shell, float(np.radians(degrees)))} for degrees in (0.0, 60.0, 85.0, 88.0, 89.0, 89.9)]
 
 
 def sphere_numbers(count: int, tell: Tell) -> list[dict[str, Any]]:

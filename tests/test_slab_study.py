@@ -86,6 +86,21 @@ def test_the_plane_is_dark_by_little(extinction: float, degrees: float, off: flo
     assert sphere_single(flat, 0.7, 0.3) == pytest.approx(plane_single(flat, 0.7, 0.3), rel=1e-6)
 
 
+def test_only_droplets_have_a_bow_and_a_glory() -> None:
+    mie, lobe, air = slab_study.contrast_numbers()
+    assert mie["bow"] > 1.3
+    assert mie["ring"] > 1.15
+    for smooth in (lobe, air):
+        assert smooth["bow"] == pytest.approx(1, abs=0.02)
+        assert smooth["ring"] == pytest.approx(1, abs=0.01)
+
+
+def test_a_planes_path_explodes_at_the_horizon() -> None:
+    lines = {line["degrees"]: line for line in slab_study.path_numbers()}
+    assert lines[60.0]["plane"] == pytest.approx(lines[60.0]["sphere"], rel=1e-3)
+    assert lines[89.9]["plane"] > 4 * lines[89.9]["sphere"]
+
+
 def test_a_chord_is_one_crossing() -> None:
     """At the angle that just meets the ground, 17,399 m (errata 001-1); beyond the base's rim both ends are on top."""
     shell = Shell(6.35e6, 2500.0, 250.0, 1.0)
@@ -104,7 +119,8 @@ def test_the_whole_study_writes_its_files(
     assert cli.main(["study", "clouds", "--slab", "--photons", "2000"]) == 0
     folder = tmp_path / "clouds" / "slab"
     lines = [json.loads(line) for line in (folder / "results.jsonl").read_text().splitlines()]
-    assert {line["part"] for line in lines} == {"errors", "orders", "lobe", "droplets", "sphere"}
+    assert {line["part"] for line in lines} == {
+        "errors", "orders", "lobe", "droplets", "sphere", "contrast", "path"}
     errors = {line["technique"]: abs(line["off_reflectance"]) for line in lines if line["part"] == "errors"}
     assert set(errors) == set(slab_report.ORDER)
     assert errors["adding_doubling"] < 0.04 < errors["single"]
