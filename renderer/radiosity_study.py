@@ -6,6 +6,7 @@ there is; errors are over the square of side 16H that is drawn.
 
 from __future__ import annotations
 
+import functools
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -13,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from renderer.clouds.radiosity.bases import GRID, HALF, Basis, haar_basis, largest_wavelets, object_basis
+from renderer.clouds.radiosity.bases import GRID, HAAR_CELLS, HALF, Basis, haar_basis, largest_wavelets, object_basis
 from renderer.clouds.radiosity.flat import Exchange, bounce
 from renderer.clouds.radiosity.kernel import flat_exchange
 from renderer.clouds.radiosity.levels import ThreeLevelExchange
@@ -42,7 +43,7 @@ HALF_BOUNCES = 60
 """Of techniques that count them: R rho = 0.72 leaves 5e-5."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Case:
     """A scene on the techniques' grid, and its truth.
 
@@ -123,14 +124,19 @@ def level_planes(case: Case, exchange: Exchange) -> tuple[np.ndarray, np.ndarray
     return case.albedo * ground[0], case.cloud + case.reflectance * base[0]
 
 
+@functools.lru_cache(maxsize=4)
+def whole(case: Case) -> tuple[np.ndarray, np.ndarray]:
+    """Radiosities of ground and base by matrices with all wavelets, (GRID, GRID)."""
+    every = haar_basis(np.arange(HAAR_CELLS * HAAR_CELLS))
+    given = (case.albedo, case.reflectance, 0 * case.albedo, case.cloud)
+    return full_solution(case.transfer(every, every), every, *given)
+
+
 def chosen(case: Case, kind: str, count: int) -> tuple[Basis, Basis]:
     """Ground's and cloud's basis; wavelets are chosen by the solution with all of them."""
     if kind != "haar":
         return (basis_of(kind, count),) * 2
-    whole = haar_basis(np.arange(1024))
-    given = (case.albedo, case.reflectance, 0 * case.albedo, case.cloud)
-    found = full_solution(case.transfer(whole, whole), whole, *given)
-    ground, cloud = (haar_basis(largest_wavelets(field[None], count, RENDERED)) for field in found)
+    ground, cloud = (haar_basis(largest_wavelets(field[None], count, RENDERED)) for field in whole(case))
     return ground, cloud
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from renderer import radiosity_report, radiosity_study
+from renderer import radiosity_charts, radiosity_report, radiosity_study
 from renderer.clouds.radiosity.bases import GRID, object_basis
 from renderer.core.cache import Cache
 from renderer.radiosity_failures import CASES, NumberCase
@@ -122,6 +122,8 @@ def test_the_report_is_written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) 
     monkeypatch.setattr(
         radiosity_study, "ridge_lines", lambda rays, tell: [{**vars(Ridge(1.0, 25.0, 30.0)), "error": 0.1}]
     )
+    monkeypatch.setattr(radiosity_study, "COUNTS", (15,))
+    monkeypatch.setattr(radiosity_charts, "SHOWN", ("fft", "transfer haar 15"))
     solving = radiosity_study.solving_time
     monkeypatch.setattr(radiosity_study, "solving_time", lambda squares, count: solving(2, count, 1))
     monkeypatch.setattr(radiosity_report, "CASES", CHEAP)

@@ -10,6 +10,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.lib.stride_tricks import as_strided
+from scipy import sparse
 
 from renderer.clouds.radiosity.bases import CELL, GRID, Basis
 from renderer.clouds.radiosity.kernel import flat_exchange
@@ -102,10 +104,6 @@ class _Side:
         np.maximum.at(found, self.basis.labels.ravel(), self.density.ravel())
         return 1 / found
 
-    def gather(self, irradiance: np.ndarray) -> np.ndarray:
-        """Weighed irradiance of each part, (..., GRID, GRID) to (..., parts)."""
-        return self.basis.means(irradiance * self.weight) * self.basis.sizes
-
 
 def flat_transfer(ground: Basis, cloud: Basis, detail: Detail = PLAIN) -> Transfer:
     """The matrices over level ground, from the exact form factors between cells; one set serves every level square."""
@@ -136,15 +134,20 @@ def _missing(to: Basis, of: Basis, matrix: np.ndarray, own: np.ndarray | None) -
     return np.outer(lack, mean if of.transform is None else of.transform @ mean)
 
 
-def _flat_parts(to: _Side, of: _Side, chunk: int = 64) -> np.ndarray:
+def _flat_parts(to: _Side, of: _Side) -> np.ndarray:
     """Mean form factors from parts of `to` to parts of `of`, (parts, parts)."""
-    exchange = flat_exchange(GRID, CELL)
-    found = np.empty((to.basis.parts, of.basis.parts))
-    for start in range(0, of.basis.parts, chunk):
-        numbers = np.arange(start, min(start + chunk, of.basis.parts))
-        lit = (of.basis.labels[None] == numbers[:, None, None]) * of.density
-        found[:, numbers] = to.gather(exchange(lit)).T
-    return found
+    factors = flat_exchange(GRID, CELL).factors
+    down, across = factors.strides
+    middle = factors[GRID - 1 :, GRID - 1 :]
+    # From each row of cells to all cells: [column, other row, other column], offsets counted back from the middle.
+    found = np.zeros((to.basis.parts, GRID * GRID))
+    for row in range(GRID):
+        seen = as_strided(middle[row:], (GRID, GRID, GRID), (across, -down, -across)).reshape(GRID, -1)
+        parts, which = np.unique(to.basis.labels[row], return_inverse=True)
+        found[parts] += sparse.csr_array((to.weight[row], (which, np.arange(GRID))), (len(parts), GRID)) @ seen
+    cells = np.arange(GRID * GRID)
+    sent = sparse.csr_array((of.density.ravel(), (of.basis.labels.ravel(), cells)), (of.basis.parts, GRID * GRID))
+    return np.asarray((sent @ found.T).T)
 
 
 def relief_transfer(hits: Hits, ground: Basis, cloud: Basis, detail: Detail = PLAIN) -> Transfer:
@@ -195,8 +198,9 @@ def _counted(met: np.ndarray, to: _Side, of: _Side, first: int) -> np.ndarray:
 
 
 def _transformed(parts: np.ndarray, to: Basis, of: Basis) -> np.ndarray:
+    found = parts.astype(np.float32)
     if to.transform is not None:
-        parts = to.transform @ parts
+        found = to.transform.astype(np.float32) @ found
     if of.transform is not None:
-        parts = parts @ of.transform.T
-    return parts.astype(np.float32)
+        found = found @ of.transform.T.astype(np.float32)
+    return found
