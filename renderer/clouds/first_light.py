@@ -22,6 +22,7 @@ from renderer.clouds.radiosity.maps import BounceMaps, square_cells
 from renderer.clouds.weather import round_site
 from renderer.clouds.world_scale import AIR_TOP, LAND_CELL
 from renderer.core.technique import Arrays
+from renderer.world.camera import pose
 from renderer.world.sky import SOLAR_CONSTANT, sky_for
 from renderer.world.sun import ANGULAR_RADIUS, angles, direction
 
@@ -42,6 +43,20 @@ DISC = 2 * ANGULAR_RADIUS
 
 KEEP = 2
 """Grounds and layers kept while only the sun moves."""
+
+
+WIDEST = 4.0
+"""Of the square against that of side 32H: within it the sun stands everywhere alike to 1.5 degrees."""
+
+
+def reach(state: CloudsState) -> float:
+    """Height to which the square's cells are cut, m: the base's, or twice or four times it where the camera is far off.
+
+    A far camera has a wider square of as many cells (Belcour 2009, section 5.2.3: several resolutions by distance).
+    """
+    base = state.layer.base
+    off = float(np.linalg.norm(pose(state.camera).eye - np.array((0.0, 0.0, base))))
+    return base * float(np.clip(2.0 ** np.floor(np.log2(max(off / (16 * base), 1.0))), 1.0, WIDEST))
 
 
 def moment(state: CloudsState) -> float:
@@ -67,9 +82,9 @@ GROUNDS: list[tuple[Arrays, tuple[Any, ...], Land]] = []
 LAYERS: list[tuple[Arrays, tuple[Any, ...], np.ndarray]] = []
 
 
-def places(base: float) -> np.ndarray:
-    """Coordinates of the sampled places along either axis, m from the site, (P,)."""
-    n, cell = square_cells(base)
+def places(wide: float) -> np.ndarray:
+    """Coordinates of the sampled places along either axis, m from the site, (P,), of a square of that reach [m]."""
+    n, cell = square_cells(wide)
     return ((np.arange(n * WITHIN) + 0.5) / WITHIN - n / 2) * cell
 
 
@@ -80,25 +95,25 @@ def cells(field: np.ndarray) -> np.ndarray:
     return np.asarray(sum(rows[:, k::WITHIN] for k in range(WITHIN))) / WITHIN**2
 
 
-def land_of(land: Arrays, planet: Mapping[str, Any], base: float) -> Land:
+def land_of(land: Arrays, planet: Mapping[str, Any], wide: float) -> Land:
     """The ground of the square.
 
     Args:
-        land: of `bake_land`. planet: `albedo`, `snow_albedo`, `snow_line`. base: m.
+        land: of `bake_land`. planet: `albedo`, `snow_albedo`, `snow_line`. wide: the square's reach, m.
     """
     heights = np.asarray(land["height"], np.float64)
     coarse = heights.reshape(len(heights) // 2, 2, -1, 2).mean(axis=(1, 3))
     north, east = np.gradient(coarse, 2 * LAND_CELL)
-    height = _sampled(coarse, base, 0.0)
+    height = _sampled(coarse, wide, 0.0)
     t = np.clip((height - planet["snow_line"]) / 120 + 0.5, 0, 1)
     snow = (t * t * (3 - 2 * t))[..., None]
     albedo = np.array(planet["albedo"]) * (1 - snow) + np.array(planet["snow_albedo"]) * snow
-    return Land(height, albedo, np.stack([_sampled(east, base, 0.0), _sampled(north, base, 0.0)]))
+    return Land(height, albedo, np.stack([_sampled(east, wide, 0.0), _sampled(north, wide, 0.0)]))
 
 
-def _sampled(field: np.ndarray, base: float, beyond: float) -> np.ndarray:
+def _sampled(field: np.ndarray, wide: float, beyond: float) -> np.ndarray:
     """A field (N, N) over means of 2 x 2 of the land's nodes at the sampled places, and what lies beyond it."""
-    at = np.floor(places(base) / (2 * LAND_CELL) + len(field) / 2).astype(int)
+    at = np.floor(places(wide) / (2 * LAND_CELL) + len(field) / 2).astype(int)
     inside = (at >= 0) & (at < len(field))
     rows, columns = np.ix_(np.clip(at, 0, len(field) - 1), np.clip(at, 0, len(field) - 1))
     return np.where(inside[:, None] & inside[None, :], field[rows, columns], beyond)
@@ -107,13 +122,13 @@ def _sampled(field: np.ndarray, base: float, beyond: float) -> np.ndarray:
 def _ground(state: CloudsState, land: Arrays) -> Land:
     """The ground of a document's square, kept while only the sun moves."""
     planet = {name: getattr(state.planet, name) for name in ("albedo", "snow_albedo", "snow_line")}
-    base = state.layer.base
-    return _kept(GROUNDS, land, (*planet.values(), base), lambda: land_of(land, planet, base))
+    wide = reach(state)
+    return _kept(GROUNDS, land, (*planet.values(), wide), lambda: land_of(land, planet, wide))
 
 
 def _overhead(state: CloudsState, fields: Arrays) -> np.ndarray:
     """Optical depth over the places, kept while only the sun moves."""
-    key = (state.layer, state.clouds, moment(state))
+    key = (state.layer, state.clouds, state.planet, moment(state), reach(state))
     return _kept(LAYERS, fields, key, lambda: depth_at(state, fields, (0.0, 0.0)))
 
 
@@ -132,7 +147,7 @@ def depth_at(state: CloudsState, fields: Arrays, shift: tuple[float, float]) -> 
     layer, clouds, time = state.layer, state.clouds, moment(state)
     side = 1000.0 if clouds.kind == "uniform" else clouds.side
     way, azimuth = layer.wind * time, math.radians(layer.wind_azimuth)
-    along = places(layer.base)
+    along = places(reach(state))
     x = along + shift[0] - way * math.sin(azimuth)
     y = along + shift[1] - way * math.cos(azimuth)
     texels = fields["fields"].shape[1]
@@ -172,13 +187,13 @@ def bounce_maps(state: CloudsState, baked: Mapping[str, Arrays]) -> BounceMaps:
 
     length = np.sqrt(1 + (land.rise**2).sum(axis=0))
     facing = np.maximum(mu - land.rise[0] * sun[0] - land.rise[1] * sun[1], 0) / length
-    horizon = _sampled(horizon_towards(baked["land"], azimuth), base, -1.0)
+    horizon = _sampled(horizon_towards(baked["land"], azimuth), reach(state), -1.0)
     t = np.clip((mu - horizon) / (DISC * max(math.cos(elevation), 0.01)) + 0.5, 0, 1)
     facing = facing * (t * t * (3 - 2 * t))
     above = read(np.concatenate([np.maximum(passed - direct, 0), even], axis=1), depth, DEPTHS)
     beam = facing[..., None] * read(direct, along, DEPTHS) + max(mu, 0.0) * above[..., :3]
     ground = light.sun_irradiance * beam + light.sky_irradiance * (1 - above[..., 3:])
-    n, cell = square_cells(base)
+    n, cell = square_cells(reach(state))
     albedo = cells(land.albedo * ground) / np.maximum(cells(ground), 1e-9)
     below = _beam(baked["air"], base, mu) * SOLAR_CONSTANT * max(-mu, 0.0)
     return BounceMaps(

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from renderer.clouds.bakes import bakes
-from renderer.clouds.first_light import bake_bounce_ground, bounce_maps, cells, moment, places
+from renderer.clouds.first_light import bake_bounce_ground, bounce_maps, cells, moment, places, reach
 from renderer.clouds.radiosity.bases import GRID
 from renderer.clouds.radiosity.maps import BounceMaps
 from renderer.clouds.radiosity.technique import solved_of
@@ -130,6 +130,22 @@ def test_the_ground_of_the_matrices_is_that_of_the_light(baked: Callable[[Bake],
     found = mapped(land={"kind": "built_in"}, planet={"snow_line": 500.0})
     np.testing.assert_allclose(made["elevation"], found.elevation)
     assert made["albedo"].shape == (GRID, GRID, 3)
+
+
+def test_a_far_camera_has_a_wider_square(mapped: Maps, baked: Callable[[Bake], Arrays]) -> None:
+    def far(distance: float) -> dict[str, Any]:
+        return {"camera": {"kind": "orbit", "target": [0, 0, 2500], "distance": distance}}
+
+    for distance, times in ((20e3, 1), (79e3, 1), (81e3, 2), (161e3, 4), (1e7, 4)):
+        assert reach(state(**far(distance))) == times * 2500
+    near, wide = mapped(**far(20e3)), mapped(**far(2e5))
+    assert (wide.n, wide.half, wide.height) == (GRID, 4 * near.half, near.height)
+    np.testing.assert_allclose(wide.ground[32, 32], near.ground[32, 32], rtol=1e-6)
+    document = state(**far(2e5))
+    assert document.bounce.constants(document, {})["bounce_half"] == 16 * 4 * 2500  # type: ignore[attr-defined]
+    even = solved_of(document, arrays(baked, document)).added.ground
+    product = wide.albedo * wide.reflectances
+    np.testing.assert_allclose(even, wide.ground * product / (1 - product), rtol=1e-3)
 
 
 def test_cells_are_means() -> None:

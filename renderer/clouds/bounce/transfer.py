@@ -8,7 +8,7 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 
 from renderer.clouds.bakes import land_bake
-from renderer.clouds.first_light import bake_bounce_ground
+from renderer.clouds.first_light import bake_bounce_ground, reach
 from renderer.clouds.radiosity.bases import GRID, Basis, haar_basis
 from renderer.clouds.radiosity.flat import first
 from renderer.clouds.radiosity.kernel import flat_exchange
@@ -64,28 +64,30 @@ class TransferMatrices(BounceTechnique):
 
     def bakes(self, state: Any) -> list[Bake]:
         """The matrices of the state's basis over its land; level land has none of its own."""
-        ground = None
-        if state.land.kind != "flat":
+        ground, scale = None, reach(state) / state.layer.base
+        if state.land.kind != "flat" and scale == 1:
             named = {name: getattr(state.planet, name) for name in ("albedo", "snow_albedo", "snow_line")}
             arguments = {"height": state.layer.base, **named}
             ground = Bake("bounce_ground", bake_bounce_ground, arguments, (land_bake(state),), seconds=1)
-        return [self.matrix_bake(state.basis, state.layer.base, ground)]
+        return [self.matrix_bake(state.basis, state.layer.base, ground, scale)]
 
-    def matrix_bake(self, basis: Any, height: float, ground: Bake | None = None) -> Bake:
+    def matrix_bake(self, basis: Any, height: float, ground: Bake | None = None, scale: float = 1.0) -> Bake:
         """The bake `transfer`.
 
         Args:
             basis: the technique of the slot `basis`. height: of the cloud base, m.
             ground: bake of `elevation` and `albedo` over the square, whose name is `bounce_ground`; none if level.
+            scale: of the square against that of side 32H, which is taken for level where it is wider.
         """
         arguments = {
             "basis": basis.kind,
             "coefficients": self.coefficients,
-            "height": float(height),
+            "height": float(height) if ground is not None else 1.0,
+            "scale": float(scale),
             "rays": RAYS,
             "centre_height": float(getattr(basis, "centre_height", 8.0)),
         }
-        return Bake("transfer", bake_transfer, arguments, () if ground is None else (ground,), version=1, seconds=12)
+        return Bake("transfer", bake_transfer, arguments, () if ground is None else (ground,), version=2, seconds=12)
 
     def solve(self, maps: BounceMaps, basis: BasisTechnique | None, baked: Mapping[str, Arrays]) -> Solved:
         """Solve with the baked matrices."""

@@ -12,7 +12,8 @@ class ThreeLevelExchange:
     """Turns the radiosity of one plane into the irradiance of the other by the means of three footprints.
 
     Args:
-        n: cells along a side. cell: side of one, a whole part of the height. height: of the cloud base, same unit.
+        n: cells along a side. cell: side of one, a whole part of the levels' widths where these are wider.
+        height: of the cloud base, same unit.
         reading: of the footprints (formulas a7): the `texels` of size H, 2H and 8H that hold the point, bilinear `taps`
             between their middles, or `discs` of radius H, 2H and 8H around it.
 
@@ -24,9 +25,10 @@ class ThreeLevelExchange:
         self.n = n
         self.reading = reading
         self.weights = level_weights(reading)
-        self._cells = [round(width * height / cell) for width in LEVELS]
+        widths = [max(width * height / cell, 1.0) for width in LEVELS]
+        self._cells = [round(width) for width in widths]
         if reading != "discs":
-            if abs(self._cells[0] * cell - height) > 1e-6 * height or n % self._cells[-1]:
+            if np.abs(np.subtract(widths, self._cells)).max() > 1e-6 or n % self._cells[-1]:
                 raise ValueError(f"{n} cells of {cell} cannot be cut into texels of {LEVELS} times {height}")
             return
         self._size = fft.next_fast_len(n + 2 * self._cells[-1], real=True)

@@ -68,13 +68,13 @@ class Bounced:
     cloud: np.ndarray
 
 
-def square_cells(height: float) -> tuple[int, float]:
+def square_cells(wide: float) -> tuple[int, float]:
     """Cells along a side of the square on which bounces are computed, and a cell's side in metres.
 
     Args:
-        height: of the cloud base above the ground, m.
+        wide: the square's reach, m: the height of the cloud base, or a multiple of it seen from far.
     """
-    return GRID, CELL * height
+    return GRID, CELL * wide
 
 
 def uniform_gain(albedo: np.ndarray, reflectance: np.ndarray) -> np.ndarray:

@@ -40,7 +40,7 @@ def bake_transfer(
 
     Args:
         arguments: `basis` (kind), `coefficients`, `centre_height`, `rays` of each cell, `height` of the base over the
-            elevation 0 in m.
+            elevation 0 in m, `scale` of the square against that of side 32H; a wider one is taken for level.
         inputs: `bounce_ground`, where relief counts: `elevation` (GRID, GRID) in m and the ground's `albedo` (GRID,
             GRID[, C]); without it all is level and even.
 
@@ -59,10 +59,12 @@ def bake_transfer(
         hits = cast(nodes_of(elevation), arguments["rays"], lambda share, words: progress(0.8 * share, words))
     progress(0.8, "counting what rays met")
 
-    detail = Detail(albedo=albedo)
+    detail, scale = Detail(albedo=albedo), arguments["scale"]
 
     def made(below: Basis, above: Basis) -> Transfer:
-        found = flat_transfer(below, above, detail) if hits is None else relief_transfer(hits, below, above, detail)
+        found = (
+            flat_transfer(below, above, detail, scale) if hits is None else relief_transfer(hits, below, above, detail)
+        )
         return closed(found, below, above)
 
     kept: dict[str, np.ndarray] = {}
@@ -72,7 +74,7 @@ def bake_transfer(
     else:
         below = above = basis_of(arguments["basis"], arguments["coefficients"], arguments["centre_height"])
     found = made(below, above)
-    level = closed(flat_transfer(below, above, detail), below, above)
+    level = closed(flat_transfer(below, above, detail, scale), below, above)
     return {
         **found.arrays(),
         **kept,

@@ -12,7 +12,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from renderer.clouds.first_light import bounce_maps, moment
+from renderer.clouds.first_light import bounce_maps, moment, reach
 from renderer.clouds.radiosity.bases import HALF, Basis
 from renderer.clouds.radiosity.maps import Bounced, BounceMaps
 from renderer.clouds.technique import CloudsTechnique
@@ -116,7 +116,7 @@ class BounceTechnique(CloudsTechnique):
 
     def frame_key(self, state: Any) -> tuple[Any, ...]:
         """What the solution depends on: sun, layer, clouds, moment, land and ground, and the techniques."""
-        where = (state.layer, state.clouds, moment(state), state.planet, state.land, state.air)
+        where = (state.layer, reach(state), state.clouds, moment(state), state.planet, state.land, state.air)
         return (angles(state.sun), *where, state.scattering, state.bounce, state.basis)
 
     def frame_textures(self, state: Any, baked: Mapping[str, Arrays]) -> dict[str, np.ndarray]:
@@ -125,7 +125,7 @@ class BounceTechnique(CloudsTechnique):
 
     def constants(self, state: Any, baked: Mapping[str, Arrays]) -> dict[str, Any]:
         """Those of the square around the site."""
-        return self.numbers(HALF * state.layer.base)
+        return self.numbers(HALF * reach(state))
 
 
 KEPT: list[tuple[tuple[Any, ...], Mapping[str, Arrays], Solved]] = []

@@ -105,11 +105,15 @@ class _Side:
         return 1 / found
 
 
-def flat_transfer(ground: Basis, cloud: Basis, detail: Detail = PLAIN) -> Transfer:
-    """The matrices over level ground, from the exact form factors between cells; one set serves every level square."""
+def flat_transfer(ground: Basis, cloud: Basis, detail: Detail = PLAIN, scale: float = 1.0) -> Transfer:
+    """The matrices over level ground, from the exact form factors between cells; one set serves every level square.
+
+    Args:
+        scale: of the square against that of side 32H.
+    """
     level = np.ones((GRID, GRID))
     below, above = _Side.of(ground, *detail.ground(), level), _Side.of(cloud, *detail.cloud(), level)
-    from_cloud, from_ground = _flat_parts(below, above), _flat_parts(above, below)
+    from_cloud, from_ground = _flat_parts(below, above, scale), _flat_parts(above, below, scale)
     return Transfer(
         _transformed(from_cloud, ground, cloud),
         _transformed(from_ground, cloud, ground),
@@ -134,9 +138,9 @@ def _missing(to: Basis, of: Basis, matrix: np.ndarray, own: np.ndarray | None) -
     return np.outer(lack, mean if of.transform is None else of.transform @ mean)
 
 
-def _flat_parts(to: _Side, of: _Side) -> np.ndarray:
+def _flat_parts(to: _Side, of: _Side, scale: float = 1.0) -> np.ndarray:
     """Mean form factors from parts of `to` to parts of `of`, (parts, parts)."""
-    factors = flat_exchange(GRID, CELL).factors
+    factors = flat_exchange(GRID, CELL * scale).factors
     down, across = factors.strides
     middle = factors[GRID - 1 :, GRID - 1 :]
     # From each row of cells to all cells: [column, other row, other column], offsets counted back from the middle.

@@ -12,13 +12,15 @@ from renderer.clouds.basis.object import ObjectBasis
 from renderer.clouds.basis.solid_angle import SolidAngleBasis
 from renderer.clouds.bounce.fft import Fft
 from renderer.clouds.bounce.transfer import TransferMatrices
+from renderer.clouds.first_light import bake_bounce_ground
 from renderer.clouds.planet import FlatLand, Layer
 from renderer.clouds.radiosity.bases import CELL, GRID, HALF
 from renderer.clouds.radiosity.matrices import bake_transfer
 from renderer.clouds.radiosity.technique import BasisTechnique
 from renderer.clouds.state import CloudsState
 from renderer.core.errors import Cancelled, InputError
-from renderer.core.technique import Arrays
+from renderer.core.technique import Arrays, Bake
+from renderer.world.camera import Orbit
 from tests.clouds.bounce.conftest import HEIGHT, Shown, maps, middles, uneven
 
 BASES = (ObjectBasis(), SolidAngleBasis(), HaarBasis())
@@ -28,6 +30,7 @@ VALLEY = np.where(FAR > 3, 0.7, 0.0) * HEIGHT
 """A round plain of radius 3H among highlands 0.7H high."""
 
 
+LAND = Bake("bounce_ground", bake_bounce_ground, {})
 KEPT: dict[str, dict[str, Arrays]] = {}
 
 
@@ -35,7 +38,7 @@ def baked(
     technique: TransferMatrices, basis: BasisTechnique, ground: Mapping[str, np.ndarray] | None = None, rays: int = 64
 ) -> dict[str, Arrays]:
     """The bake `transfer`, those of level ground once each."""
-    bake = technique.matrix_bake(basis, HEIGHT)
+    bake = technique.matrix_bake(basis, HEIGHT, None if ground is None else LAND)
     name = str(bake.arguments)
     if ground is None and name in KEPT:
         return KEPT[name]
@@ -113,11 +116,23 @@ def test_the_bake_follows_basis_relief_and_height() -> None:
     assert [source.name for source in bake.inputs[0].inputs] == ["land"]
     assert bake.arguments["basis"] == "solid_angle"
     assert (bake.arguments["height"], bake.arguments["centre_height"], bake.arguments["coefficients"]) == (1000, 5, 256)
-    assert technique.bakes(CloudsState(land=FlatLand()))[0].inputs == ()
+    (level,) = technique.bakes(CloudsState(land=FlatLand()))
+    assert level.inputs == ()
+    assert level.arguments["height"] == 1, "level ground has one set for every height"
+    (far,) = technique.bakes(CloudsState(camera=Orbit(distance=1e5)))
+    assert (far.arguments["scale"], far.inputs) == (2, ())
+
+
+def test_a_wider_square_exchanges_more_within_its_cells() -> None:
+    technique, basis = TransferMatrices(), ObjectBasis()
+    near, far = (technique.matrix_bake(basis, HEIGHT, scale=scale) for scale in (1.0, 4.0))
+    (one, other) = (bake.function(bake.arguments, {}, lambda share, words: None)["from_cloud"] for bake in (near, far))
+    assert np.diag(other).mean() > np.diag(one).mean() + 0.15
+    np.testing.assert_allclose(other.sum(axis=1), 1, atol=1e-4)
 
 
 def test_relief_of_another_size_is_refused_and_work_stops() -> None:
-    arguments = TransferMatrices().matrix_bake(ObjectBasis(), HEIGHT).arguments
+    arguments = TransferMatrices().matrix_bake(ObjectBasis(), HEIGHT, LAND).arguments
     with pytest.raises(InputError, match="elevation"):
         bake_transfer(arguments, {"bounce_ground": {"elevation": np.zeros((8, 8)), "albedo": np.zeros((8, 8))}}, print)
     high = {"bounce_ground": {"elevation": 2 * VALLEY, "albedo": 0.3 + 0 * VALLEY}}

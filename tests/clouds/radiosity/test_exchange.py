@@ -61,6 +61,15 @@ def test_levels_want_texels_that_fit() -> None:
         ThreeLevelExchange(64, 0.3, 1.0, "texels")
 
 
+@pytest.mark.parametrize("reading", READINGS)
+def test_cells_wider_than_a_level_hold_it_whole(reading: str) -> None:
+    """Seen from far a cell is 2H wide: the means over H and 2H are its own."""
+    lit = np.random.default_rng(8).random((64, 64))
+    means = ThreeLevelExchange(64, 2.0, 1.0, reading).means(lit)  # type: ignore[arg-type]
+    np.testing.assert_allclose(means[0], lit, atol=1e-6)
+    assert np.abs(means[2] - lit).mean() > 0.1
+
+
 def cone_of_error(reading: str) -> float:
     lit = np.random.default_rng(3).random((64, 64)).cumsum(0).cumsum(1) % 300 / 300
     exact = FlatExchange(64, 0.5, 1.0).spread(lit)
