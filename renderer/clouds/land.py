@@ -13,8 +13,11 @@ from renderer.clouds.world_scale import LAND_CELL, LAND_NODES, LAND_RIM
 from renderer.core.cache import AssetStore
 from renderer.core.errors import InputError
 from renderer.core.technique import Arrays
-from renderer.world.horizon_sweep import sweeps
+from renderer.world.horizon_sweep import sweep, sweeps
 from renderer.world.terrain import TerrainReading, crop, default_terrain, load_terrain
+
+LEVEL = 0.005
+"""Rise over run of summits over the layer that hide nothing of the sun yet."""
 
 HORIZON_AZIMUTHS = 64
 """Azimuths in which the land's horizon is kept."""
@@ -55,6 +58,18 @@ def horizon_towards(land: Arrays, azimuth: float) -> np.ndarray:
     share = np.float32(place - low)
     found: np.ndarray = horizon[low] + share * (horizon[(low + 1) % len(horizon)] - horizon[low])
     return found
+
+
+def horizon_of_layer(land: Arrays, azimuth: float, altitude: float) -> np.ndarray:
+    """Sine of the elevation at which summits hide an azimuth [rad] from the layer of clouds at an altitude [m], (N / 2,
+    N / 2); -1 where none does: that of the higher of land and layer, which nothing below the layer changes."""
+    size = LAND_NODES // 2
+    if float(land["top"]) <= altitude:
+        return np.full((size, size), -1.0, np.float32)
+    coarse = np.asarray(land["height"], np.float64).reshape(size, 2, size, 2).mean(axis=(1, 3))
+    slopes = sweep(np.maximum(coarse, altitude)[::-1], (2 * LAND_CELL, 2 * LAND_CELL), azimuth)[::-1]
+    hidden = np.maximum(slopes, 0.0)
+    return np.where(hidden > LEVEL, np.sin(np.arctan(hidden)), -1.0).astype(np.float32)
 
 
 def _horizons(height: np.ndarray, progress: Callable[[float, str], None]) -> np.ndarray:

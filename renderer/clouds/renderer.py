@@ -20,7 +20,14 @@ from renderer.clouds.program import (
     scout_source,
     shade_source,
 )
-from renderer.clouds.textures import horizon_texture, moment_map, technique_textures, weather_texture, world_textures
+from renderer.clouds.textures import (
+    LIT_TOPS,
+    horizon_texture,
+    moment_map,
+    technique_textures,
+    weather_texture,
+    world_textures,
+)
 from renderer.core.params import uniforms
 from renderer.core.technique import Arrays, BakedArrays
 from renderer.gl.context import GL
@@ -181,8 +188,10 @@ class CloudsRenderer:
             lambda: weather_texture(self._gl, arrays["fields"], state.planet),
         )
         azimuth = angles(state.sun)[0]
+        tops = tuple(state.layer.base + share * state.layer.thickness for share in LIT_TOPS)
         held |= self._moment.get(
-            ("horizon", baked["land"].key, azimuth), lambda: horizon_texture(self._gl, arrays["land"], azimuth)
+            ("horizon", baked["land"].key, azimuth, tops),
+            lambda: horizon_texture(self._gl, arrays["land"], azimuth, tops),
         )
         side = cloud_side(state)
         held |= self._moment.get(

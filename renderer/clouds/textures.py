@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
 from renderer.clouds.air import skylight
 from renderer.clouds.cloud_map import thickness_map
-from renderer.clouds.land import horizon_towards, tops
+from renderer.clouds.land import horizon_of_layer, horizon_towards, tops
 from renderer.clouds.weather import round_site
 from renderer.core.technique import Arrays
 from renderer.gl.context import GL
@@ -55,9 +55,16 @@ def weather_texture(gl: GL, fields: Arrays, planet: Any) -> dict[str, AnyTexture
     return {"cloud_systems": mipmapped(gl, found, False)}
 
 
-def horizon_texture(gl: GL, land: Arrays, azimuth: float) -> dict[str, AnyTexture]:
-    """The land's horizon towards the sun's azimuth [rad clockwise from north], and what it sees of the sky."""
-    return {"land_horizon": gl.texture2d(np.stack([horizon_towards(land, azimuth), land["open"]], axis=-1))}
+LIT_TOPS = (0.5, 2.0)
+"""Shares of the layer's thickness at which its upper side is asked for what summits hide; LAYER_LOW and LAYER_HIGH of
+shaders/clouds/ground.glsl."""
+
+
+def horizon_texture(gl: GL, land: Arrays, azimuth: float, tops: Sequence[float]) -> dict[str, AnyTexture]:
+    """The land's horizon towards the sun's azimuth [rad clockwise from north], what it sees of the sky, and the horizon
+    of a layer whose upper side lies at two altitudes [m]."""
+    layer = (horizon_of_layer(land, azimuth, altitude) for altitude in tops)
+    return {"land_horizon": gl.texture2d(np.stack([horizon_towards(land, azimuth), land["open"], *layer], axis=-1))}
 
 
 def moment_map(gl: GL, clouds: Any, fields: Arrays, side: float, time: float) -> dict[str, AnyTexture]:

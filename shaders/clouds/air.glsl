@@ -13,6 +13,7 @@ const float AIR_DARKEST = 80.0;
 const vec3 AIR_RAYLEIGH = vec3(5.802e-3, 13.558e-3, 33.100e-3); // km-1
 const vec3 AIR_OZONE = vec3(0.650e-3, 1.881e-3, 0.085e-3);      // km-1
 const float AIR_MIE = 3.996e-3, AIR_MIE_LOST = 4.44e-3;         // km-1, scattering and extinction of haze
+const vec2 AIR_HEIGHTS = vec2(8.0, 1.2);                         // km, over which molecules and haze thin out by e
 const float AIR_PI = 3.14159265358979;
 const float SUN_RADIUS = 0.00465305; // rad
 
@@ -44,12 +45,17 @@ vec3 air_skylight_at(float mu) {
     return textureLod(air_skylight, vec2((x * (size - 1.0) + 0.5) / size, 0.5), 0.0).rgb;
 }
 
-vec3 air_extinction(float altitude, out vec3 rayleigh, out float mie) {
-    float height = max(0.001 * altitude, 0.0);
-    rayleigh = AIR_RAYLEIGH * exp(-height / 8.0);
-    float particles = air_haze * exp(-height / 1.2);
+// Density of molecules and of haze against that on the ground, at an altitude in m.
+vec2 air_density(float altitude) {
+    return exp(-max(0.001 * altitude, 0.0) / AIR_HEIGHTS);
+}
+
+// Of molecules and haze of some density, and of the ozone at an altitude (m), km-1.
+vec3 air_extinction(vec2 density, float altitude, out vec3 rayleigh, out float mie) {
+    rayleigh = AIR_RAYLEIGH * density.x;
+    float particles = air_haze * density.y;
     mie = AIR_MIE * particles;
-    return rayleigh + AIR_MIE_LOST * particles + AIR_OZONE * max(0.0, 1.0 - abs(height - 25.0) / 15.0);
+    return rayleigh + AIR_MIE_LOST * particles + AIR_OZONE * max(0.0, 1.0 - abs(0.001 * altitude - 25.0) / 15.0);
 }
 
 // The part of a ray that lies in the air, and how its points are spread: close where light changes along it. From a camera low
@@ -109,14 +115,18 @@ vec3 air_between(Path path, AirRay ray, vec3 origin, vec3 direction, vec2 shares
     const float g = 0.8;
     vec2 phases = 3.0 / (8.0 * AIR_PI) * (1.0 + facing * facing)
         * vec2(0.5, (1.0 - g * g) / (2.0 + g * g) * pow(1.0 + g * g - 2.0 * g * facing, -1.5));
-    float from = air_distance(ray, shares.x);
+    float from = air_distance(ray, shares.x), high = path_altitude(path, from);
+    vec2 density = air_density(high);
     for (int k = 1; k <= steps; k++) {
         float to = air_distance(ray, mix(shares.x, shares.y, float(k) / float(steps)));
         float t = 0.5 * (from + to);
-        float altitude = path_altitude(path, t);
+        float altitude = path_altitude(path, t), next = path_altitude(path, to);
+        // Mean over the step of a density that falls exponentially: a step may be longer than the haze is deep.
+        vec2 beyond = air_density(next);
+        vec2 mean = abs(next - high) > 50.0 ? abs(1000.0 * AIR_HEIGHTS * (density - beyond) / (next - high)) : 0.5 * (density + beyond);
         vec3 rayleigh;
         float mie;
-        vec3 extinction = air_extinction(altitude, rayleigh, mie);
+        vec3 extinction = air_extinction(mean, altitude, rayleigh, mie);
         float mu = (sunward + t * facing) / (planet_radius + altitude);
         vec3 source = sun_irradiance * sun_through_air(altitude, mu) * (rayleigh * phases.x + mie * phases.y)
             + air_glow_at(altitude, mu) * (rayleigh + mie);
@@ -124,6 +134,8 @@ vec3 air_between(Path path, AirRay ray, vec3 origin, vec3 direction, vec2 shares
         light += exp(-min(depth, AIR_DARKEST)) * source * (1.0 - exp(-min(lost, AIR_DARKEST))) / max(extinction, 1.0e-12);
         depth += lost;
         from = to;
+        high = next;
+        density = beyond;
     }
     return light;
 }

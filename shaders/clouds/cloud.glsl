@@ -48,7 +48,7 @@ Lit stretch_light(Stretch s, vec3 origin, vec3 direction) {
     // Light comes along -sun_direction and leaves along -direction.
     float turned = dot(level_ray, level_sun) * inversesqrt(max(dot(level_ray, level_ray) * dot(level_sun, level_sun), 1.0e-12));
     Slab slab = Slab(s.depth, mu_sun, s.mu_view, dot(direction, sun_direction), clamp(turned, -1.0, 1.0));
-    vec3 beam = sun_at_layer(point, layer_base + s.thickness, mu);
+    vec3 beam = sun_at_layer(point, layer_base + s.thickness, mu) * layer_sees_sun(place_of(point), s.thickness, mu);
     vec3 light = beam * scattering_leaving(slab, sunlit_side(mu, from_above));
 
     vec3 reflected = scattering_diffuse_reflectance(s.depth);

@@ -4,7 +4,7 @@
 // land_heights  m above the sphere, nodes land_cell apart round the site    globe_albedo  root of the Earth's albedo, by
 // longitude and latitude    land_tops  highest land of each node's cell, and of 2 x 2 of those
 // at each coarser level
-//   land_horizon  r: sine of the elevation above which each node of
+//   land_horizon  ba: sines of the layer's horizon, at two heights; r: sine of the elevation above which each node of
 // the land sees the sun, g: share of an even sky's light that reaches it
 
 #include "lib/patches.glsl"
@@ -94,6 +94,17 @@ vec2 land_sees(vec2 place, float mu) {
     // Near the horizon, where it matters, a sine is its angle.
     float t = clamp((mu - horizon) / (2.0 * SUN_RADIUS * sqrt(max(1.0 - mu * mu, 1.0e-4))) + 0.5, 0.0, 1.0);
     return mix(vec2(1.0), vec2(t * t * (3.0 - 2.0 * t), found.g), inside.x * inside.y);
+}
+
+// Share of the sun's disc that summits leave to the upper side of a layer of some thickness (m) over a place.
+const float LAYER_LOW = 0.5, LAYER_HIGH = 2.0;
+float layer_sees_sun(vec2 place, float thickness, float mu) {
+    vec2 found = textureLod(land_horizon, land_place(place), 0.0).ba;
+    float share = thickness / max(layer_thickness, 1.0e-3);
+    float horizon = mix(found.x, found.y, clamp((share - LAYER_LOW) / (LAYER_HIGH - LAYER_LOW), 0.0, 1.0));
+    vec2 inside = step(abs(land_place(place) - 0.5), vec2(0.5));
+    float t = clamp((mu - horizon) / (4.0 * SUN_RADIUS) + 0.5, 0.0, 1.0);
+    return mix(1.0, t * t * (3.0 - 2.0 * t), inside.x * inside.y);
 }
 
 // Before what distance the rays of a pixel's block and of those around it meet no land, m: a little nearer than their nearest

@@ -28,3 +28,15 @@ def test_the_foot_of_a_wall_sees_half_of_the_sky() -> None:
     height = np.zeros((LAND_NODES, LAND_NODES))
     height[:, 300:] = 20000.0
     assert opened(height)[128, 148] == pytest.approx(0.5, abs=0.02)
+
+
+def test_a_summit_hides_the_sun_from_the_layer_behind_it() -> None:
+    """A needle that stands 400 m out of the layer, seen from 2 km to its west under an eastern sun: its sine is known."""
+    height = np.zeros((LAND_NODES, LAND_NODES), np.float32)
+    height[256:258, 256:258] = 1400.0
+    made = {"height": height, "top": np.array(1400.0)}
+    found = land.horizon_of_layer(made, np.pi / 2, 1000.0)
+    assert found[128, 128 - 20] == pytest.approx(np.sin(np.arctan(400 / 2000)), rel=0.02)
+    assert found[128, 128 + 20] == -1.0, "nothing in the east of it"
+    assert found[128 - 40, 128 - 20] == -1.0
+    assert (land.horizon_of_layer(made, np.pi / 2, 1500.0) == -1.0).all(), "a layer above all summits"
