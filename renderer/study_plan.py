@@ -15,6 +15,9 @@ from renderer.world.state import View
 JUDGED: dict[Judge, str] = {"combination": "", "shadow": "shadow"}
 """Folder of each judgement's results inside a study's."""
 
+SHADOWED = frozenset({"forest"})
+"""Scenes whose reference can be had under the picture's own light."""
+
 SUNS: Mapping[str, tuple[float, float]] = {
     "az180_el62": (180.0, 62.0),
     "az120_el20": (120.0, 20.0),
@@ -48,7 +51,8 @@ SOME_SUNS = 8
 """Suns of a study of slots, whose techniques are combined with each other; a study of combinations takes all."""
 
 SLOTS = ("shadow", "light", "geometry")
-"""Slots whose techniques are combined, where none are named; the others keep their defaults."""
+"""Slots whose techniques are combined, as far as a scene has them, where none are named; the others keep their
+defaults."""
 
 EXACT = "exact"
 """Stands for a slot's technique in a picture that the reference drew."""
@@ -68,7 +72,7 @@ class Plan:
     scene: str
     presets: tuple[str, ...] = ()
     suns: tuple[str, ...] = tuple(SUNS)[:SOME_SUNS]
-    slots: tuple[str, ...] = SLOTS
+    slots: tuple[str, ...] = ()
     size: int = 128
     judge: Judge = "combination"
 
@@ -80,8 +84,9 @@ class Plan:
         """
         found = phenomenon(self.scene)
         presets = self.presets or tuple(found.presets)[:1]
+        slots = self.slots or tuple(name for name in SLOTS if name in self.slots_of(self.scene))
         known = {"presets": tuple(found.presets), "suns": tuple(SUNS), "slots": self.slots_of(self.scene)}
-        for option, given in (("presets", presets), ("suns", self.suns), ("slots", self.slots)):
+        for option, given in (("presets", presets), ("suns", self.suns), ("slots", slots)):
             for name in given:
                 if name not in known[option]:
                     raise InputError(option, f"there is no {name} in {self.scene}", ", ".join(known[option]))
@@ -89,8 +94,7 @@ class Plan:
             raise InputError("slots", f"{COMBINATION} fills all of them", "alone, or the slots by name")
         if not 16 <= self.size <= 256:
             raise InputError("size", f"{self.size} px are not studied", "16 to 256: the reference runs on the CPU")
-        return replace(self, presets=presets)
-
+        return replace(self, presets=presets, slots=slots)
 
     @staticmethod
     def slots_of(scene: str) -> tuple[str, ...]:
@@ -101,7 +105,9 @@ class Plan:
     @property
     def judged(self) -> Mapping[Judge, str]:
         """Folder of each judgement's results inside the study's."""
-        return {"combination": COMBINATION} if self.slots == (COMBINATION,) else JUDGED
+        if self.slots == (COMBINATION,):
+            return {"combination": COMBINATION}
+        return JUDGED if self.scene in SHADOWED else {"combination": ""}
 
 
 def kinds_of(scene: str, slot: str) -> Iterable[str]:

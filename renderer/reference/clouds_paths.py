@@ -169,7 +169,7 @@ def _follow(scene, hero, p, d, u, whole, factor, path, state, work, marched, spa
     """
     kept, first = 1.0, u >= 0.0
     for event in range(100000):
-        free = -math.log(1.0 - (u if first else uniform(state))) / max(scene.extinction, 1e-300)
+        free = -math.log(1.0 - (u if first else uniform(state))) / scene.extinction
         # above all land, the land is only looked for where the clouds end
         high = min(altitude(scene, p[0], p[1], p[2]), scene.base) > scene.land_top
         stop = sphere_at(scene, p, d) if high else ground_at(scene, p, d)

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
 
-PEAK = math.radians(8.0)
+PEAK = math.radians(14.0)
 """Where the peak ends, rad. Any value gives the same mean; a wider peak leaves B flatter and bends more paths."""
 
 FINE, MIDDLE, BACK = math.radians(0.0125), math.radians(0.1), math.radians(0.02)

@@ -94,7 +94,7 @@ def _chain(scene, hero, s, straight, state, angles, ways, ratio):
     else:
         at = 0.0
         while count < MOST:
-            at -= math.log(1.0 - uniform(state)) / max(share * scene.extinction, 1e-300)
+            at -= math.log(1.0 - uniform(state)) / (share * scene.extinction)
             if at > straight:
                 break
             ways[count] = at
