@@ -41,6 +41,22 @@ def measure(session: Session, scene: str, folder: Path, size: int, frames: int, 
     Raises:
         InputError: a size that is not studied.
     """
+    errors, times, unit = measured(session, scene, folder, size, frames, tell)
+    return keep(folder, facts(scene, errors, times, size, unit))
+
+
+def keep(folder: Path, found: Mapping[str, Any]) -> Path:
+    """Write `facts.json`, and return its path."""
+    path = folder / "facts.json"
+    path.write_text(json.dumps(found, indent=1), encoding="utf-8")
+    return path
+
+
+def measured(
+    session: Session, scene: str, folder: Path, size: int, frames: int, tell: Tell | None = None
+) -> tuple[list[dict[str, Any]], list[dict[str, Any]], float]:
+    """Errors and times of `variants`, as lines that are also added to `results.jsonl`, and a yardstick [ms]; arguments
+    as of `measure`."""
     presets = tuple(name for name, preset in phenomenon(scene).presets.items() if not preset.group)
     study = Study(session, Plan(scene, presets, size=size).checked())
     machine = provenance(session.gl.info.renderer)
@@ -50,25 +66,17 @@ def measure(session: Session, scene: str, folder: Path, size: int, frames: int, 
     stick = session.gl.call(Yardstick)
     watch = Stopwatch(session, scene, TIMED_SIZE)
     times: list[dict[str, Any]] = []
+
+    def yardstick() -> float:
+        return session.gl.call(stick.draw_ms)
+
     try:
         for what in MOVES[1:]:
             turned = [Case(presets[0], "preset", chosen, {"moves": what}) for chosen in variants(scene)]
-            times += clock(
-                results,
-                turned,
-                watch.frame_ms,
-                TIMED_SIZE,
-                machine,
-                lambda: session.gl.call(stick.draw_ms),
-                frames,
-                tell,
-            )
+            times += clock(results, turned, watch.frame_ms, TIMED_SIZE, machine, yardstick, frames, tell)
     finally:
         watch.close()
-    path = folder / "facts.json"
-    unit = min(session.gl.call(stick.draw_ms) for _ in range(QUICKEST_OF))
-    path.write_text(json.dumps(facts(scene, errors, times, size, unit), indent=1), encoding="utf-8")
-    return path
+    return errors, times, min(yardstick() for _ in range(QUICKEST_OF))
 
 
 def facts(scene: str, errors: Lines, times: Lines, size: int, unit: float) -> dict[str, Any]:

@@ -130,13 +130,15 @@ def study(given: argparse.Namespace) -> int:
         return slab(given)
     with Session() as session:
         scene = session.describe(given.scene)
+        if not any(slot["name"] in study_plan.SLOTS for slot in scene["slots"]) and not given.slots:
+            return alone(session, given)
         slots = COMBINATION if given.combinations else given.slots
         suns = "all" if given.combinations else str(study_plan.SOME_SUNS)
         plan = study_plan.Plan(
             given.scene,
             presets_of(given.presets, scene["presets"]),
             names_of("--suns", given.suns or suns, tuple(study_plan.SUNS)),
-            names_of("--slots", slots, study_plan.Plan.slots_of(given.scene)) or study_plan.SLOTS,
+            names_of("--slots", slots, study_plan.Plan.slots_of(given.scene)),
             given.size,
         ).checked()
         folder = Path(load().study) / given.scene
@@ -150,6 +152,25 @@ def study(given: argparse.Namespace) -> int:
             keep(folder / part, DOCS / "study" / given.scene / part, KEPT)
     homes = ", ".join(str(folder / part) for part in plan.judged.values())
     print(f"{homes}: results.jsonl, table.md, speed_accuracy.svg .png .csv")
+    return 0
+
+
+def alone(session: Session, given: argparse.Namespace) -> int:
+    """Study each technique of a scene alone, in every preset under its own sun."""
+    from renderer import alone_study
+
+    if given.combinations or given.presets or given.suns:
+        raise InputError("--slots", "must be named where presets, suns or combinations are chosen")
+    folder = Path(load().study) / given.scene / "alone"
+    tell = Teller(given.scene)
+    try:
+        alone_study.run(session, given.scene, folder, given.size, max(given.frames, 1), tell)
+    finally:
+        tell.bar.close()
+    if given.docs:
+        keep(folder, DOCS / "study" / given.scene / "alone", alone_study.FILES)
+        keep(folder, DOCS / "study" / given.scene / "techniques", ("facts.json",))
+    print(f"{folder}: results.jsonl, facts.json, {', '.join(alone_study.FILES)}")
     return 0
 
 
