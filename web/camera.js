@@ -5,6 +5,7 @@ import { add, angles, cross, direction, length, normalised, radians, scaled, wra
 const TURN = 180;
 const STEEPEST = 89;
 const FLIGHT = 300;
+const RISE = 0.25;
 const FIELD_OF_VIEW = 40;
 
 const level = (angle) => Math.max(-STEEPEST, Math.min(STEEPEST, angle));
@@ -17,6 +18,9 @@ function pose(camera) {
   const sight = add(camera.target, camera.eye, -1);
   return { ahead: normalised(sight), target: camera.target, distance: length(sight) };
 }
+
+/** Metres that a flying camera is up: the higher, the faster it flies, or space would be hours away. */
+const height = (camera) => Math.abs(camera.eye[2]);
 
 /** Metres spanned by the picture's height where the camera looks. */
 function reach(camera, aspect) {
@@ -55,7 +59,7 @@ export function zoom(camera, factor) {
   if (camera.kind === "orbit") return { distance: camera.distance * factor };
   if (camera.kind === "orthographic") return { width: camera.width * factor };
   const { ahead, distance } = pose(camera);
-  return shifted(camera, scaled(ahead, distance * (1 - factor)));
+  return shifted(camera, scaled(ahead, Math.max(distance, height(camera)) * (1 - factor)));
 }
 
 /** Fly for `seconds` along right, ahead and up, each in [-1, 1]; all but a camera that looks round stays level. */
@@ -63,7 +67,7 @@ export function fly(camera, rightward, onward, upward, seconds, aspect) {
   const { ahead } = pose(camera);
   const free = camera.kind === "look";
   const right = rightOf(camera, ahead);
-  const speed = free ? Math.min(FLIGHT, reach(camera, aspect)) : reach(camera, aspect) * 0.6;
+  const speed = free ? Math.max(Math.min(FLIGHT, reach(camera, aspect)), height(camera) * RISE) : reach(camera, aspect) * 0.6;
   const on = free ? ahead : normalised([ahead[0], ahead[1], 0]);
   return shifted(camera, scaled(add(add(scaled(right, rightward), on, onward), [0, 0, 1], upward), speed * seconds));
 }

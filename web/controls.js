@@ -81,7 +81,7 @@ class NumberControl extends Control {
       on: { change: () => this.commit(), keydown: (event) => this.key(event) } });
     const unit = el("span", { class: "unit", text: unitOf(node) });
     this.reset.after(el("span", { class: "number" }, this.entry, unit));
-    if (this.bounded) this.body(this.track());
+    if (this.bounded && !node.umbrage?.plays) this.body(this.track()); // no slider reaches all of time
     this.draggable(this.label);
   }
 

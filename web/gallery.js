@@ -1,7 +1,7 @@
 // Scenes and presets as a strip of real thumbnails, drawn by the server when the strip is first opened.
 
 import * as api from "./api.js";
-import { el, humanise, say } from "./dom.js";
+import { el, humanise, say, segments } from "./dom.js";
 import { same } from "./document.js";
 
 const WIDTH = 320;
@@ -18,6 +18,7 @@ export class Gallery {
       button.focus();
     });
     store.addEventListener("change", () => this.name());
+    store.addEventListener("scene", () => this.changed());
   }
 
   async load() {
@@ -28,6 +29,14 @@ export class Gallery {
     this.root.hidden = !open;
     this.button.setAttribute("aria-expanded", String(open));
     if (open) this.build();
+  }
+
+  /** Another scene was chosen: its presets, in the strip that is still open. */
+  changed() {
+    this.name();
+    if (this.root.hidden) return;
+    this.build();
+    this.root.querySelector("input:checked")?.focus({ preventScroll: true });
   }
 
   /** Scene and preset now shown; a preset keeps its name until something in the picture changes. */
@@ -43,10 +52,11 @@ export class Gallery {
   build() {
     const { scene } = this.store;
     if (!scene) return;
-    const others = (this.scenes ?? []).filter((item) => item.name !== scene.name)
-      .map((item) => el("button", { type: "button", class: "quiet", text: item.title, title: item.help, on: { click: () => this.choose(item.name, null) } }));
+    const { radios, group } = segments("Scene", (this.scenes ?? []).map((item) => [item.name, item.title]), (name) => this.choose(name, null));
+    for (const radio of radios) radio.checked = radio.value === scene.name;
+    group.hidden = radios.length < 2;
     const cards = Object.entries(scene.presets).map(([name, preset]) => this.card(scene, name, preset));
-    this.root.replaceChildren(el("div", { class: "strip", role: "group", "aria-label": `Presets of ${scene.title}` }, cards), ...others);
+    this.root.replaceChildren(group, el("div", { class: "strip", role: "group", "aria-label": `Presets of ${scene.title}` }, cards));
     this.root.querySelector("button")?.focus({ preventScroll: true });
   }
 

@@ -65,6 +65,7 @@ const upload = part(() => import("./upload.js"), ({ Upload }) => new Upload(dial
 const sunStudy = part(() => import("./sunstudy.js"), ({ SunStudy }) => new SunStudy(store));
 const probe = part(() => import("./probe.js"), ({ Probe }) => new Probe(find("#probe"), link, store, () => sunBar));
 const compare = part(() => import("./compare.js"), ({ Compare }) => (window.umbrage.compare = new Compare(find("#compare"), screen, store, link, notices)));
+const runner = part(() => import("./running.js"), ({ Runner }) => new Runner(find("#timeline .time-row"), store, link));
 const studies = part(() => import("./studies.js"), ({ Studies }) => new Studies(store, open));
 
 const tools = {
@@ -220,6 +221,7 @@ async function start() {
   });
   stats.addEventListener("frame", () => {
     waiting();
+    runner(() => {});
     panels.drawn = true;
     panels.learn();
   }, { once: true });

@@ -16,6 +16,19 @@ def _look(eye: tuple[float, float, float], target: tuple[float, float, float], f
     return {"kind": "look", "eye": list(eye), "target": list(target), "field_of_view": field_of_view}
 
 
+def _orbit(
+    target: tuple[float, float, float], distance: float, azimuth: float, elevation: float, field_of_view: float
+) -> dict[str, Any]:
+    return {
+        "kind": "orbit",
+        "target": list(target),
+        "distance": distance,
+        "azimuth": azimuth,
+        "elevation": elevation,
+        "field_of_view": field_of_view,
+    }
+
+
 def _towards(height: float, azimuth: float, elevation: float, field_of_view: float) -> dict[str, Any]:
     """A camera over the site that looks along a direction, degrees."""
     az, el = math.radians(azimuth), math.radians(elevation)
@@ -25,18 +38,6 @@ def _towards(height: float, azimuth: float, elevation: float, field_of_view: flo
         height + AHEAD * math.sin(el),
     )
     return _look((0.0, 0.0, height), (round(target[0], 1), round(target[1], 1), round(target[2], 1)), field_of_view)
-
-
-def _round(distance: float, azimuth: float, elevation: float, field_of_view: float) -> dict[str, Any]:
-    """A camera that circles the planet's centre at a distance from it, m."""
-    return {
-        "kind": "orbit",
-        "target": [0, 0, -PLANET_RADIUS],
-        "distance": distance,
-        "azimuth": azimuth,
-        "elevation": elevation,
-        "field_of_view": field_of_view,
-    }
 
 
 def _sun(azimuth: float, elevation: float) -> dict[str, Any]:
@@ -54,7 +55,7 @@ PRESETS = {
         "Sea of clouds",
         "Summits stand out of a closed layer into the first sun.",
         {
-            "camera": _look((-9000, -11000, 2500), (0, 0, 1400), 40),
+            "camera": _orbit((0, 0, 1400), 14250, 219.3, 4.4, 40),
             "sun": _sun(110, 12),
             "view": {"exposure": -0.7},
             "layer": {"base": 1250.0, "thickness": 180.0},
@@ -67,7 +68,7 @@ PRESETS = {
         "Valley under stratocumulus",
         "Shadows of clouds on the hills below.",
         {
-            "camera": _look((7000, -9000, 1500), (0, 0, 500), 50),
+            "camera": _orbit((0, 0, 500), 11450, 142.1, 5.0, 50),
             "sun": _sun(30, 38),
             "view": {"exposure": 0.2},
             "layer": {"base": 2600.0, "thickness": 150.0},
@@ -126,7 +127,7 @@ PRESETS = {
         "Stratus over snow",
         "Light goes to and fro between snow and clouds.",
         {
-            "camera": _look((7000, -9000, 1500), (0, 0, 900), 50),
+            "camera": _orbit((0, 0, 900), 11420, 142.1, 3.0, 50),
             "sun": _sun(120, 28),
             "view": {"exposure": -0.4},
             "layer": {"base": 2700.0, "thickness": 90.0},
@@ -139,7 +140,7 @@ PRESETS = {
         "The Earth from space",
         "Day and night from 20,000 km.",
         {
-            "camera": _round(2.635e7, 150.0, 60.0, 32.0),
+            "camera": _orbit((0, 0, -PLANET_RADIUS), 2.635e7, 150.0, 60.0, 32.0),
             "sun": _sun(110, 40),
             "view": {"exposure": 0.0},
             "layer": {"thickness": 200.0},

@@ -42,6 +42,9 @@ class CloudsState(SceneState):
         SunDirection(azimuth=110.0, elevation=14.0), label="Sun", help="Where the light comes from.", cost="host"
     )
     view: View = param(View(exposure=-1.0), label="View", help="Exposure, tone curve and background.", cost="host")
+    time: float = param(
+        0.0, label="Time", help="Clouds drift and change with it.", unit="s", cost="host", ge=0, le=1e9, plays=60.0
+    )
     layer: Layer = param(Layer(), label="Layer", help="The layer of clouds.")
     clouds: Clouds = param(ProceduralClouds(), label="Cloud map", help="Where the layer is thick.", cost="bake")
     planet: Planet = param(Planet(), label="Planet", help="The sphere, the site and its ground.")

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+import moderngl
 import numpy as np
 
 from renderer.clouds.air import skylight
@@ -69,7 +70,10 @@ def horizon_texture(gl: GL, land: Arrays, azimuth: float, tops: Sequence[float])
 
 def moment_map(gl: GL, clouds: Any, fields: Arrays, side: float, time: float) -> dict[str, AnyTexture]:
     """The thickness map of a moment, and its slopes per metre."""
-    return {"cloud_map": mipmapped(gl, with_slopes(thickness_map(clouds, fields, time), side), True)}
+    made = gl.texture2d(with_slopes(thickness_map(clouds, fields, time), side).astype(np.float16), wrap="repeat")
+    made.build_mipmaps()  # sides are powers of two: the driver's levels are means, and time that runs wants them soon
+    made.filter = moderngl.LINEAR_MIPMAP_LINEAR, moderngl.LINEAR
+    return {"cloud_map": made}
 
 
 def with_slopes(thickness: np.ndarray, side: float) -> np.ndarray:

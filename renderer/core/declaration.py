@@ -70,6 +70,7 @@ def param(
     source: str = "",
     max_length: int | None = None,
     pattern: str | None = None,
+    plays: float | None = None,
 ) -> Any:
     """Declare one parameter.
 
@@ -83,8 +84,11 @@ def param(
         step: suggested increment of a control.
         source: author, year, section or equation.
         max_length, pattern: limits of a text value.
+        plays: how much it grows in a second where a person lets it run.
     """
     extra: dict[str, Any] = {"unit": unit, "cost": cost}
+    if plays is not None:
+        extra["plays"] = plays
     if step is not None:
         extra["step"] = step
     if source:

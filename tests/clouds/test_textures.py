@@ -2,10 +2,17 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
-from renderer.clouds.textures import halved, with_slopes
+from renderer.clouds.planet import ProceduralClouds
+from renderer.clouds.textures import halved, moment_map, with_slopes
+from renderer.gl.context import GL
+from renderer.gl.thread import GLThread
+
+FIELDS = np.random.default_rng(6).standard_normal((2, 64, 64)).astype(np.float32)
 
 
 @pytest.mark.parametrize("kind", [np.uint8, np.float16, np.float32])
@@ -26,3 +33,19 @@ def test_open_sky_adds_nothing_to_the_mean_thickness() -> None:
     assert np.array_equal(made[..., 3], np.maximum(field, 0))
     east = (np.roll(made[..., 3], -1, 1) - np.roll(made[..., 3], 1, 1)) / 200.0
     assert made[..., 1] == pytest.approx(east, abs=1e-6)
+
+
+def test_the_levels_that_the_driver_makes_are_means(thread: GLThread) -> None:
+    """A map that jumps from texel to texel, so that any other filter shows."""
+    clouds, fields = ProceduralClouds(systems=False), {"fields": FIELDS}
+
+    def levels(gl: GL) -> list[np.ndarray]:
+        made: Any = moment_map(gl, clouds, fields, 64e3, 0.0)["cloud_map"]
+        try:
+            return [np.frombuffer(made.read(level=k), np.float16).reshape(64 >> k, 64 >> k, 4) for k in (0, 1, 2)]
+        finally:
+            made.release()
+
+    whole, half, quarter = (level.astype(float) for level in thread.call(levels))
+    assert half == pytest.approx(whole.reshape(32, 2, 32, 2, 4).mean(axis=(1, 3)), abs=2e-3)
+    assert quarter == pytest.approx(whole.reshape(16, 4, 16, 4, 4).mean(axis=(1, 3)), abs=3e-3)
