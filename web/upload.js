@@ -19,9 +19,10 @@ export function placesFor(schema, kind) {
   const found = [];
   for (const [name, node] of schema.fields(schema.root)) {
     const title = node.title ?? humanise(name);
-    const add = (field, patch, own) => {
+    const add = (field, inner, patch) => {
       const map = MAPS.includes(kind) && field.endsWith("_map");
-      if (map || [name, field].includes(kind)) found.push({ path: `${name}.${field}`, title: map ? own : title, patch, reading });
+      const own = inner.title;
+      if (inner.umbrage?.takes?.includes(kind) ?? (map || [name, field].includes(kind))) found.push({ path: `${name}.${field}`, title: map ? own : title, patch, reading });
     };
     let reading = null;
     const sort = schema.sort(node);
@@ -30,11 +31,11 @@ export function placesFor(schema, kind) {
       for (const [field, inner] of schema.fields(member)) {
         const fresh = () => schema.fresh(member);
         const read = (said) => ("reading" in fresh() ? { reading: { ...fresh().reading, ...said } } : {});
-        if (schema.isAsset(inner)) add(field, (asset, said) => ({ [name]: { ...fresh(), ...read(said), [field]: asset } }));
+        if (schema.isAsset(inner)) add(field, inner, (asset, said) => ({ [name]: { ...fresh(), ...read(said), [field]: asset } }));
       }
     }
     for (const [field, inner] of sort === "object" ? schema.fields(node) : []) {
-      if (schema.isAsset(inner)) add(field, (asset) => ({ [name]: { [field]: asset } }), inner.title);
+      if (schema.isAsset(inner)) add(field, inner, (asset) => ({ [name]: { [field]: asset } }));
     }
   }
   return found;

@@ -108,6 +108,7 @@ class UserClouds(Model):
         help="An uploaded picture, raster or array `thickness`, as asset:HASH.",
         cost="bake",
         pattern=ASSET,
+        takes=("map", "image", "terrain"),
     )
     side: float = param(
         64000.0,
@@ -154,7 +155,9 @@ class UserLand(Model):
     """A square of an uploaded elevation model."""
 
     kind: Literal["asset"] = "asset"
-    asset: str = param(..., label="File", help="An uploaded terrain, as asset:HASH.", cost="bake", pattern=ASSET)
+    asset: str = param(
+        ..., label="File", help="An uploaded terrain, as asset:HASH.", cost="bake", pattern=ASSET, takes=("terrain",)
+    )
     east: float = param(
         0.0, label="East", help="The site, from the model's centre.", unit="m", cost="bake", ge=-1e6, le=1e6
     )

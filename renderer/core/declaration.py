@@ -71,6 +71,7 @@ def param(
     max_length: int | None = None,
     pattern: str | None = None,
     plays: float | None = None,
+    takes: tuple[str, ...] = (),
 ) -> Any:
     """Declare one parameter.
 
@@ -85,10 +86,13 @@ def param(
         source: author, year, section or equation.
         max_length, pattern: limits of a text value.
         plays: how much it grows in a second where a person lets it run.
+        takes: kinds of uploaded files that it may name, where its own name and its parent's do not say them.
     """
     extra: dict[str, Any] = {"unit": unit, "cost": cost}
     if plays is not None:
         extra["plays"] = plays
+    if takes:
+        extra["takes"] = list(takes)
     if step is not None:
         extra["step"] = step
     if source:
