@@ -6,6 +6,8 @@ const TURN = 180;
 const STEEPEST = 89;
 const FLIGHT = 300;
 const RISE = 0.25;
+const NEARBY = 1000;
+const UPWARDS = 0.1;
 const FIELD_OF_VIEW = 40;
 
 const level = (angle) => Math.max(-STEEPEST, Math.min(STEEPEST, angle));
@@ -54,12 +56,17 @@ export function pan(camera, dx, dy, aspect) {
   return shifted(camera, add(scaled(right, -dx * size), cross(right, ahead), dy * size));
 }
 
-/** Zoom by a factor: less than 1 comes closer. */
+/**
+ * Zoom by a factor: less than 1 comes closer. Near its target a flying camera flies on through it; far from it, it keeps it in
+ * view, and retreats upwards, not into the ground behind.
+ */
 export function zoom(camera, factor) {
   if (camera.kind === "orbit") return { distance: camera.distance * factor };
   if (camera.kind === "orthographic") return { width: camera.width * factor };
   const { ahead, distance } = pose(camera);
-  return shifted(camera, scaled(ahead, Math.max(distance, height(camera)) * (1 - factor)));
+  const way = distance * (1 - factor);
+  if (distance < NEARBY) return shifted(camera, scaled(ahead, way));
+  return { eye: add(camera.eye, factor > 1 ? [ahead[0], ahead[1], Math.min(-Math.abs(ahead[2]), -UPWARDS)] : ahead, way) };
 }
 
 /** Fly for `seconds` along right, ahead and up, each in [-1, 1]; all but a camera that looks round stays level. */

@@ -19,7 +19,7 @@ export class Runner {
   look() {
     this.stop();
     const { schema } = this.store;
-    this.field = [...schema.fields(schema.root)].find(([, node]) => node.umbrage?.plays);
+    this.field = schema && [...schema.fields(schema.root)].find(([, node]) => node.umbrage?.plays);
     this.button.hidden = !this.field;
   }
 
