@@ -31,7 +31,7 @@ def test_the_foot_of_a_wall_sees_half_of_the_sky() -> None:
 
 
 def test_a_summit_hides_the_sun_from_the_layer_behind_it() -> None:
-    """A needle that stands 400 m out of the layer, seen from 2 km to its west under an eastern sun: its sine is known."""
+    """A needle that stands 400 m out of the layer, 2 km to the east under an eastern sun: its sine is known."""
     height = np.zeros((LAND_NODES, LAND_NODES), np.float32)
     height[256:258, 256:258] = 1400.0
     made = {"height": height, "top": np.array(1400.0)}
