@@ -34,7 +34,8 @@ bool sunlit_side(float mu, bool from_above) { return true; }
 bool sunlit_side(float mu, bool from_above) { return (mu > 0.0) == from_above; }
 #endif
 
-Lit stretch_light(Stretch s, vec3 origin, vec3 direction) {
+// albedo: of the ground behind.
+Lit stretch_light(Stretch s, vec3 origin, vec3 direction, vec3 albedo) {
     vec3 point = origin + s.t * direction;
     vec3 up = up_at(point);
     float cosine = dot(direction, up), mu = dot(up, sun_direction);
@@ -54,12 +55,7 @@ Lit stretch_light(Stretch s, vec3 origin, vec3 direction) {
     vec3 reflected = scattering_diffuse_reflectance(s.depth);
     vec3 passed = max(1.0 - reflected - exp(-1.66 * s.depth), vec3(0.0));
     vec3 from_top = air_skylight_at(mu);
-    // Where no map of the bounced light reaches: what comes through the layer here falls on the ground here.
-#if CAMERA_SIDE < 0
-    vec3 albedo = planet_albedo;
-#else
-    vec3 albedo = ground_albedo(point, up, place_of(point), 0.0, layer_base);
-#endif
+    // Where no map of the bounced light reaches: what comes through the layer here falls on the ground that is seen here.
     vec3 below = (beam * max(mu, 0.0) + from_top) * (1.0 - reflected);
     vec3 from_base = bounce_cloud(place_of(point), BounceHere(below, albedo, reflected));
     light += (from_above ? reflected * from_top + passed * from_base : passed * from_top + reflected * from_base) / AIR_PI;

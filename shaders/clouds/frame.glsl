@@ -62,7 +62,7 @@ vec4 radiance_along(vec3 origin, vec3 direction, Path path, vec4 ground, vec3 al
     airs.light_behind *= lit;
 #endif
     vec3 behind = light_behind(origin, direction, path, ground, albedo, overhead);
-    Lit near = stretch_light(first, origin, direction);
+    Lit near = stretch_light(first, origin, direction, ground.x >= 0.0 ? albedo : planet_albedo);
 #if CAMERA_SIDE >= 0
     Lit far = stretch_light_far(second, origin, direction);
     behind = far.light + far.kept * behind;
