@@ -24,6 +24,7 @@ SHOWN = (
     "transfer solid_angle 256",
     "transfer haar 64",
     "transfer haar 256",
+    "transfer haar 64, gathered",
 )
 """Whose profiles are drawn."""
 

@@ -20,15 +20,13 @@ from renderer.clouds.radiosity.kernel import flat_exchange
 from renderer.clouds.radiosity.levels import ThreeLevelExchange
 from renderer.clouds.radiosity.matrices import RENDERED, basis_of, full_solution
 from renderer.clouds.radiosity.relief import Hits, cast
-from renderer.clouds.radiosity.scenes import GROUND, ValidationScene, validation_scenes
+from renderer.clouds.radiosity.scenes import ValidationScene, validation_scenes
 from renderer.clouds.radiosity.solve import Answers, Squares, direct
 from renderer.clouds.radiosity.transfer import Detail, Transfer, flat_transfer, relief_transfer
 from renderer.core.baking import bake_now
 from renderer.core.cache import Cache
 from renderer.core.technique import Arrays, Bake
 from renderer.reference.cloud_radiosity import Scene, Solution, by_quadrature, by_rays
-from renderer.reference.cloud_radiosity_rays import cast as march
-from renderer.reference.cloud_radiosity_rays import gather
 
 Tell = Callable[[float, str], None]
 
@@ -148,6 +146,22 @@ def in_basis(case: Case, ground: Basis, cloud: Basis) -> tuple[np.ndarray, np.nd
     return answers.ground @ found[0], first[1] + answers.cloud @ found[1]
 
 
+def gathered(case: Case, ground: Basis, cloud: Basis) -> list[np.ndarray]:
+    """Radiosities of ground and base, (GRID, GRID), as the renderer has them: each place gathers by the kernel of level
+    planes what the basis found, and the basis keeps what relief changes."""
+    transfer, level = case.transfer(ground, cloud), flat_transfer(ground, cloud, case.detail)
+    from_ground, from_cloud = in_basis(case, ground, cloud)
+    exchange = flat_exchange(GRID, 2 * HALF / GRID)
+    answers = Answers.of(ground, cloud, case.albedo, case.reflectance)
+    first = np.zeros(ground.n, np.float32), cloud.analyse(case.cloud).astype(np.float32)
+    above = cloud.synthesise((transfer.from_ground - level.from_ground) @ from_ground)
+    below = ground.synthesise((transfer.from_cloud - level.from_cloud) @ from_cloud + transfer.on_ground @ from_ground)
+    sent = case.cloud + case.reflectance * cloud.synthesise(direct(transfer, answers, *first)[1])
+    back = case.albedo * (exchange(sent) + below)
+    sent = case.cloud + case.reflectance * (exchange(back) + above)
+    return [case.albedo * (exchange(sent) + below), sent]
+
+
 def matrix_line(case: Case, kind: str, count: int) -> tuple[dict[str, Any], list[np.ndarray]]:
     """Errors of transfer matrices in one basis, and their radiosities on the truth's cells."""
     bases = chosen(case, kind, count)
@@ -163,6 +177,13 @@ def matrix_line(case: Case, kind: str, count: int) -> tuple[dict[str, Any], list
     return line, fields
 
 
+def plain_line(case: Case, name: str, found: list[np.ndarray]) -> dict[str, Any]:
+    """Errors of radiosities of ground and base (FINE, FINE) that are in no basis."""
+    sides = zip(("ground", "cloud"), found, (case.truth.ground, case.truth.cloud), strict=True)
+    errors = {side: {"pointwise": off(field, right), "blocks": in_blocks(field, right)} for side, field, right in sides}
+    return {"scene": case.scene.name, "technique": name, **errors}
+
+
 def scene_lines(case: Case) -> tuple[list[dict[str, Any]], dict[str, list[np.ndarray]]]:
     """Errors of every technique in one scene, and the radiosities of ground and base (FINE, FINE) by technique."""
     truth = case.truth
@@ -175,14 +196,7 @@ def scene_lines(case: Case) -> tuple[list[dict[str, Any]], dict[str, list[np.nda
     for name, exchange in flat_exchanges().items():
         found = [_fine(field) for field in level_planes(case, exchange)]
         fields[name] = found
-        lines.append(
-            {
-                "scene": case.scene.name,
-                "technique": name,
-                "ground": {"pointwise": off(found[0], truth.ground), "blocks": in_blocks(found[0], truth.ground)},
-                "cloud": {"pointwise": off(found[1], truth.cloud), "blocks": in_blocks(found[1], truth.cloud)},
-            }
-        )
+        lines.append(plain_line(case, name, found))
     for kind in BASES:
         for count in COUNTS:
             line, both = matrix_line(case, kind, count)
@@ -190,6 +204,9 @@ def scene_lines(case: Case) -> tuple[list[dict[str, Any]], dict[str, list[np.nda
                 line[side]["blocks"] = in_blocks(field, right)
             lines.append(line)
             fields[f"transfer {kind} {count}"] = both
+            both = [_fine(field) for field in gathered(case, *chosen(case, kind, count))]
+            lines.append({**plain_line(case, f"transfer {kind}, gathered", both), "coefficients": count})
+            fields[f"transfer {kind} {count}, gathered"] = both
     noise = {
         side: off(right + error, right)
         for side, right, error in (
@@ -233,53 +250,3 @@ def solving_time(squares: int = 256, coefficients: int = 64, times: int = 20) ->
         "prepare_ms": 1e3 * (prepared - start),
         "solve_ms": 1e3 * (time.process_time() - prepared) / times,
     }
-
-
-@dataclass(frozen=True)
-class Ridge:
-    """A ridge of gable section that runs north to south, and the sun in the east (Belcour 2009, figure 5.4).
-
-    Attributes:
-        half_width: in heights. slope, sun: degrees.
-    """
-
-    half_width: float
-    slope: float
-    sun: float
-
-
-def ridge_error(ridge: Ridge, rays: int = 256) -> float:
-    """Mean error of level ground for the base's light over a sunlit ridge, first half-bounce (figure 5.5)."""
-    corners = np.linspace(-HALF, HALF, FINE + 1)
-    rise, climb = np.tan(np.radians(ridge.slope)), np.tan(np.radians(ridge.sun))
-    gable = np.maximum(0.0, ridge.half_width - np.abs(corners)) * rise
-    if gable.max() >= 0.95:
-        return float("nan")
-    middles = (corners[1:] + corners[:-1]) / 2
-    slopes = np.diff(gable) / np.diff(corners)
-    facing = np.maximum(np.sin(np.radians(ridge.sun)) - slopes * np.cos(np.radians(ridge.sun)), 0)
-    facing /= np.sqrt(1 + slopes**2)
-    # Where the ridge's crest stands before the sun, the ground lies in its shadow.
-    high = (gable[1:] + gable[:-1]) / 2
-    crest = ridge.half_width * rise - climb * (0.0 - middles)
-    facing = np.where((middles < 0) & (high < crest - 1e-9) & (climb < rise), 0.0, facing)
-    light = GROUND * np.broadcast_to(facing, (FINE, FINE))
-    turns = np.random.default_rng(1).random((2, FINE, FINE, 2))
-    hits = march(np.broadcast_to(gable, (FINE + 1, FINE + 1)).copy(), HALF, rays, turns)
-    dark = np.zeros(FINE * FINE + 1)
-    relief = gather(hits, np.concatenate([light.ravel(), dark]))[1]
-    even = np.full((FINE, FINE), GROUND * np.sin(np.radians(ridge.sun)))
-    level = gather(march(np.zeros((FINE + 1, FINE + 1)), HALF, rays, turns), np.concatenate([even.ravel(), dark]))[1]
-    over = (np.abs(middles) < max(ridge.half_width, 0.5))[None, :] & (np.abs(middles) < 8)[:, None]
-    return float(np.mean(np.abs(level - relief)[over]) / np.mean(relief[over]))
-
-
-def ridge_lines(rays: int, tell: Tell) -> list[dict[str, Any]]:
-    """The error over slopes, widths and suns."""
-    wanted = [Ridge(1.0, slope, sun) for slope in (10.0, 20.0, 30.0, 40.0) for sun in (5, 10, 15, 20, 30, 45, 60, 90)]
-    wanted += [Ridge(width, 25.0, sun) for width in (0.5, 1.0, 1.5, 2.0) for sun in (5, 10, 15, 20, 30, 45, 60, 90)]
-    lines = []
-    for k, ridge in enumerate(wanted):
-        tell(k / len(wanted), "ridges under the sun")
-        lines.append({**vars(ridge), "error": ridge_error(ridge, rays)})
-    return lines

@@ -9,11 +9,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from renderer import radiosity_charts, radiosity_report, radiosity_study
+from renderer import radiosity_charts, radiosity_report, radiosity_ridges, radiosity_study
 from renderer.clouds.radiosity.bases import GRID, object_basis
 from renderer.core.cache import Cache
 from renderer.radiosity_failures import CASES, NumberCase
-from renderer.radiosity_study import Case, Ridge
+from renderer.radiosity_ridges import Ridge
+from renderer.radiosity_study import Case
 from server import cli
 
 CHEAP = tuple(case for case in CASES if case.name in ("truncated_disc", "albedo_near_one", "broken_edges"))
@@ -102,11 +103,11 @@ def test_failures_over_relief(case: NumberCase) -> None:
 def test_a_sunlit_ridge_is_no_level_ground() -> None:
     """Figure 5.5: a high sun over gentle slopes is harmless, a low one behind a steep ridge is not."""
     harmless, bad = (
-        radiosity_study.ridge_error(ridge, 16) for ridge in (Ridge(1.0, 5.0, 90.0), Ridge(1.0, 35.0, 15.0))
+        radiosity_ridges.ridge_error(ridge, 16) for ridge in (Ridge(1.0, 5.0, 90.0), Ridge(1.0, 35.0, 15.0))
     )
     assert harmless < 0.02
     assert bad > 0.3
-    assert np.isnan(radiosity_study.ridge_error(Ridge(4.0, 40.0, 30.0), 16)), "it would pierce the clouds"
+    assert np.isnan(radiosity_ridges.ridge_error(Ridge(4.0, 40.0, 30.0), 16)), "it would pierce the clouds"
 
 
 def test_solving_takes_the_squares_that_are_asked_for() -> None:
@@ -120,7 +121,7 @@ def test_the_report_is_written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) 
     only = level("square")
     monkeypatch.setattr(radiosity_study, "cases", lambda rays, cache, tell: iter([only]))
     monkeypatch.setattr(
-        radiosity_study, "ridge_lines", lambda rays, tell: [{**vars(Ridge(1.0, 25.0, 30.0)), "error": 0.1}]
+        radiosity_ridges, "ridge_lines", lambda rays, tell: [{**vars(Ridge(1.0, 25.0, 30.0)), "error": 0.1}]
     )
     monkeypatch.setattr(radiosity_study, "COUNTS", (15,))
     monkeypatch.setattr(radiosity_charts, "SHOWN", ("fft", "transfer haar 15"))

@@ -110,10 +110,11 @@ class TransferMatrices(BounceTechnique):
             from_ground = lit[0] + times(answers.ground, ground)
             from_cloud = lit[1] + times(answers.cloud, cloud)
             exchange = flat_exchange(GRID, maps.cell / maps.height).spread
-            smooth_cloud = exchange(leaving[0] + albedo * _field(below, ground))
+            smooth_ground = exchange(leaving[1] + reflectance * _field(above, cloud))
             cloud = times(change["relief_from_ground"], from_ground)
-            smooth_ground = exchange(leaving[1] + reflectance * (smooth_cloud + _field(above, cloud)))
             ground = times(change["relief_from_cloud"], from_cloud) + times(transfer.on_ground, from_ground)
+            smooth_cloud = exchange(leaving[0] + albedo * (smooth_ground + _field(below, ground)))
+            smooth_ground = exchange(leaving[1] + reflectance * (smooth_cloud + _field(above, cloud)))
             even = Bounced(np.moveaxis(smooth_ground, 0, -1), np.moveaxis(smooth_cloud, 0, -1))
         return Solved(maps, even, InBasis(below, ground.astype(np.float32)), InBasis(above, cloud.astype(np.float32)))
 
