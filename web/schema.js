@@ -107,7 +107,7 @@ export function range(node) {
   };
 }
 
-const UNITS = { deg: "°", "m-1": "m⁻¹", "m s-1": "m s⁻¹", ratio: "", count: "", date: "", "W m-2": "W m⁻²" };
+const UNITS = { deg: "°", um: "µm", "m-1": "m⁻¹", "m s-1": "m s⁻¹", ratio: "", count: "", date: "", "W m-2": "W m⁻²" };
 
 /** A unit as people read it. */
 export function unitOf(node) {
