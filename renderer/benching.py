@@ -198,8 +198,19 @@ SUNS: Mapping[str, dict[str, Any]] = {
 """Three suns under which every preset is pictured."""
 
 
+OWN = ""
+"""The sun of the preset itself."""
+
+
+def suns_of(scene: str) -> tuple[str, ...]:
+    """Suns under which a scene's presets are pictured: what a cloud shows, it shows under its own."""
+    return (OWN,) if scene == "clouds" else tuple(SUNS)
+
+
 def pictured(session: Session, scene: str, preset: str, sun: str) -> SceneState:
-    """The state of a preset's picture under one of `SUNS`."""
+    """The state of a preset's picture under one of `SUNS`, or `OWN`."""
+    if sun == OWN:
+        return session.state(scene, preset, {"quality": {"kind": "samples", "n": 32}})
     return session.state(
         scene,
         preset,

@@ -283,12 +283,12 @@ def _pictures(session: Session, scene: str, presets: tuple[str, ...], tell: Tell
 
     folder = DOCS / "pictures"
     folder.mkdir(parents=True, exist_ok=True)
-    wanted = [(preset, sun) for preset in presets for sun in benching.SUNS]
+    wanted = [(preset, sun) for preset in presets for sun in benching.suns_of(scene)]
     written = []
     for number, (preset, sun) in enumerate(wanted):
-        tell(number / len(wanted), f"picture of {preset}, {sun}")
+        tell(number / len(wanted), f"picture of {preset}, {sun}".rstrip(", "))
         picture = session.render(benching.pictured(session, scene, preset, sun), *PICTURE)
-        path = folder / f"{scene}_{preset}_{sun}.jpg"
+        path = folder / f"{scene}_{preset}_{sun}.jpg".replace("_.jpg", ".jpg")
         path.write_bytes(small_jpeg(picture.rgb8, PICTURE_BYTES))
         written.append(path.name)
     return written

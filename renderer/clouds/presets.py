@@ -56,7 +56,7 @@ PRESETS = {
         "Summits stand out of a closed layer into the first sun.",
         {
             "camera": _orbit((0, 0, 1400), 14250, 219.3, 4.4, 40),
-            "sun": _sun(110, 12),
+            "sun": _sun(130, 15),
             "view": {"exposure": -0.7},
             "layer": {"base": 1250.0, "thickness": 180.0},
             "clouds": _clouds(style="stratus", cover=1.0, variation=0.35, side=24000.0, cell_size=1200.0),
