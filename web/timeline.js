@@ -149,7 +149,7 @@ export class SunBar {
     this.marks();
     const { date, latitude, longitude } = this.last;
     if (this.date !== window.document.activeElement) this.date.value = date;
-    const place = `${Math.abs(latitude).toFixed(2)}° ${latitude < 0 ? "S" : "N"}, ${Math.abs(longitude).toFixed(2)}° ${longitude < 0 ? "W" : "E"}`;
+    const place = `${Math.abs(latitude).toFixed(1)}° ${latitude < 0 ? "S" : "N"}, ${Math.abs(longitude).toFixed(1)}° ${longitude < 0 ? "W" : "E"}`;
     say(this.placeText, place);
     this.union.refresh(this.store.document);
   }

@@ -36,7 +36,8 @@ float ground_distance(Path path, vec3 origin, vec3 direction, float footprint, f
     int level = first > 0.0 ? 0 : LAND_COARSEST;
     for (int k = 0; k < LAND_STEPS; k++) {
         if (t >= stop || found < NEVER) break;
-        vec2 at = land_place(place_of(origin + t * direction)) * size;
+        // From node to node: between two, the land is smooth, and both are in the cell's texel of land_tops.
+        vec2 at = land_place(place_of(origin + t * direction)) * size - 0.5;
         float side = float(1 << level);
         vec2 cell = floor(at / side);
         vec2 ahead = ((cell + step(0.0, speed)) * side - at) / speed;
