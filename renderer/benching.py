@@ -119,6 +119,10 @@ def _moved_aside(camera: Orthographic, turn: int) -> Orthographic:
     return camera.model_copy(update={"centre": tuple(map(float, moved))})
 
 
+MOVED = ("shadow", "bounce")
+"""Slots whose techniques do most anew while sun or camera move, of which a scene has one."""
+
+
 def variants(scene: str) -> list[dict[str, str]]:
     """The default techniques, and those with one slot filled otherwise, the default first."""
     slots = phenomenon(scene).slots
@@ -141,7 +145,7 @@ def time_frames(
     presets: tuple[str, ...] = (),
     progress: Progress | None = None,
 ) -> list[dict[str, Any]]:
-    """Time every technique at every preset, and every shadow technique while the sun and the camera move.
+    """Time every technique at every preset, and those that do most anew while the sun and the camera move (`MOVED`).
 
     Techniques are timed in turns within a preset: ratios between them come from one run. Large pictures of all but the
     first preset are timed a third as often.
@@ -183,10 +187,10 @@ def _groups(scene: str, presets: tuple[str, ...]) -> Iterator[list[Case]]:
     for preset in presets:
         yield [Case(preset, "preset", chosen, {"moves": MOVES[0]}) for chosen in variants(scene)]
     default = variants(scene)[0]
+    slot = next(slot.name for slot in phenomenon(scene).slots if slot.name in MOVED)
     for what in MOVES[1:]:
         yield [
-            Case(presets[0], "preset", {**default, "shadow": kind}, {"moves": what})
-            for kind in techniques(scene, "shadow")
+            Case(presets[0], "preset", {**default, slot: kind}, {"moves": what}) for kind in techniques(scene, slot)
         ]
 
 
