@@ -31,7 +31,15 @@ FILES = ("table.md", "speed_accuracy.svg", "speed_accuracy.png")
 NAN = float("nan")
 
 
-def run(session: Session, scene: str, folder: Path, size: int, frames: int, tell: Tell | None = None) -> None:
+def run(
+    session: Session,
+    scene: str,
+    folder: Path,
+    size: int,
+    frames: int,
+    tell: Tell | None = None,
+    presets: Sequence[str] = (),
+) -> None:
     """Measure, and write `results.jsonl`, `facts.json` and `FILES`.
 
     Args:
@@ -39,10 +47,10 @@ def run(session: Session, scene: str, folder: Path, size: int, frames: int, tell
         scene: its name.
         folder: of the files; results in it are not measured again.
         size: side of the pictures that are judged, pixels. frames: timed frames of each technique.
-        tell: told the share done.
+        tell: told the share done. presets: all without a group where none is named.
     """
     folder.mkdir(parents=True, exist_ok=True)
-    errors, times, unit = technique_facts.measured(session, scene, folder, size, frames, tell)
+    errors, times, unit = technique_facts.measured(session, scene, folder, size, frames, tell, presets)
     baked = bakes(session, scene, folder / "results.jsonl", tell)
     technique_facts.keep(folder, technique_facts.facts(scene, errors, times, size, unit))
     rows = rows_of(scene, errors, times, baked, unit)
@@ -50,7 +58,7 @@ def run(session: Session, scene: str, folder: Path, size: int, frames: int, tell
     title = f"{scene}: each technique alone, {size} px, {machine['renderer']}, {machine['cores']} cores"
     noise = float(np.median([line["reference_standard_error"] for line in errors]))
     (folder / "table.md").write_text(
-        f"{title}\n\n{_note(noise, unit)}\n\n{table(rows)}\n{by_preset(scene, errors)}", encoding="utf-8"
+        f"{title}\n\n{_note(errors, noise, unit, frames)}\n\n{table(rows)}\n{by_preset(scene, errors)}", encoding="utf-8"
     )
     figure = chart(rows, title)
     FigureCanvasAgg(figure)
@@ -182,8 +190,10 @@ def _cell(value: float) -> str:
     return f"{value:.3g}" if np.isfinite(value) else "-"
 
 
-def _note(noise: float, unit: float) -> str:
+def _note(errors: Lines, noise: float, unit: float, frames: int) -> str:
+    presets = ", ".join(dict.fromkeys(line["preset"] for line in errors))
     return (
-        "Everything else at its default (bold), over every preset under its own sun. A frame is 512 x 512, the sun "
-        f"moving; a yardstick is {unit:.0f} ms there. The reference's standard error is {noise:.2g} of the mean."
+        f"Everything else at its default (bold), in the presets {presets} under their own suns. A frame is 512 x 512, "
+        f"median of {frames} in turns; the quickest yardstick took {unit:.0f} ms. The reference's standard error is "
+        f"{noise:.2g} of the mean."
     )

@@ -53,12 +53,19 @@ def keep(folder: Path, found: Mapping[str, Any]) -> Path:
 
 
 def measured(
-    session: Session, scene: str, folder: Path, size: int, frames: int, tell: Tell | None = None
+    session: Session,
+    scene: str,
+    folder: Path,
+    size: int,
+    frames: int,
+    tell: Tell | None = None,
+    presets: Sequence[str] = (),
 ) -> tuple[list[dict[str, Any]], list[dict[str, Any]], float]:
     """Errors and times of `variants`, as lines that are also added to `results.jsonl`, and a yardstick [ms]; arguments
-    as of `measure`."""
-    presets = tuple(name for name, preset in phenomenon(scene).presets.items() if not preset.group)
-    study = Study(session, Plan(scene, presets, size=size).checked())
+    as of `measure`, and `presets` where not all without a group are meant."""
+    every = tuple(name for name, preset in phenomenon(scene).presets.items() if not preset.group)
+    plan = Plan(scene, tuple(presets) or every, size=size).checked()
+    study, presets = Study(session, plan), plan.presets
     machine = provenance(session.gl.info.renderer)
     results = folder / "results.jsonl"
     cases = [Case(preset, "preset", chosen) for preset in presets for chosen in variants(scene)]

@@ -52,7 +52,8 @@ class Truth:
 
     Attributes:
         linear: (H, W, 4) float64 premultiplied radiance, W m-2 sr-1, without a background, row 0 at the top.
-        once: the same from one position a pixel, its centre.
+        once: the same from one position a pixel, its centre; of the clouds with the noise of its own paths, so that
+            what it errs by is no less than the position's own error.
         backdrop: (H, W, 3) mean radiance of the background behind each pixel.
         standard_error: root mean square over the pixels, relative to the mean radiance.
         seconds: what it took when it was computed.

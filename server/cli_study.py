@@ -130,7 +130,7 @@ def study(given: argparse.Namespace) -> int:
         return slab(given)
     with Session() as session:
         scene = session.describe(given.scene)
-        if not any(slot["name"] in study_plan.SLOTS for slot in scene["slots"]) and not given.slots:
+        if not given.slots and not {*study_plan.SLOTS} <= {slot["name"] for slot in scene["slots"]}:
             return alone(session, given)
         slots = COMBINATION if given.combinations else given.slots
         suns = "all" if given.combinations else str(study_plan.SOME_SUNS)
@@ -159,12 +159,13 @@ def alone(session: Session, given: argparse.Namespace) -> int:
     """Study each technique of a scene alone, in every preset under its own sun."""
     from renderer import alone_study
 
-    if given.combinations or given.presets or given.suns:
-        raise InputError("--slots", "must be named where presets, suns or combinations are chosen")
+    if given.combinations or given.suns:
+        raise InputError("--slots", "must be named where suns or combinations are chosen")
+    presets = presets_of(given.presets, session.describe(given.scene)["presets"])
     folder = Path(load().study) / given.scene / "alone"
     tell = Teller(given.scene)
     try:
-        alone_study.run(session, given.scene, folder, given.size, max(given.frames, 1), tell)
+        alone_study.run(session, given.scene, folder, given.size, max(given.frames, 1), tell, presets)
     finally:
         tell.bar.close()
     if given.docs:

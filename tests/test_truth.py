@@ -11,6 +11,7 @@ import pytest
 from PIL import Image
 
 from renderer import comparing, truth
+from renderer.clouds.phenomenon import PHENOMENON as CLOUDS
 from renderer.core.baking import bake_key
 from renderer.core.errors import Cancelled, InputError
 from renderer.core.params import validate
@@ -133,6 +134,27 @@ def test_whatever_is_seen_has_a_part_in_it() -> None:
     assert key(plain, 64, 64, "shadow") == key(plain, 64, 64, "share") != key(plain)
     other = state(sky={"kind": "constant"})
     assert key(other, 64, 64, "shadow") == key(other) == key(plain), "the sky's light is exact where none is shared"
+
+
+def test_of_clouds_time_and_droplets_have_a_part_in_it() -> None:
+    def clouds(**patch: Any) -> str:
+        return bake_key(truth_bake(validate(CLOUDS.state, {"scene": "clouds", **patch}), 32, 32))
+
+    plain = clouds()
+    same = [
+        clouds(phase={"kind": "rayleigh"}),
+        clouds(scattering={"kind": "single"}, geometry={"kind": "flat"}, bounce={"kind": "none"}),
+        clouds(view={"exposure": 2}),
+    ]
+    others = [
+        clouds(time=60.0),
+        clouds(phase={"kind": "mie", "radius": 12.0}),
+        clouds(layer={"thickness": 90.0}),
+        clouds(sun={"kind": "direction", "azimuth": 1, "elevation": 40}),
+    ]
+    assert set(same) == {plain}
+    assert len({plain, *others}) == len(others) + 1
+    assert key(state(time=60.0)) == key(state()), "forests do not drift"
 
 
 def test_only_the_code_that_a_reference_reads_is_in_its_key(tmp_path: Any, monkeypatch: pytest.MonkeyPatch) -> None:
