@@ -58,7 +58,8 @@ def run(
     title = f"{scene}: each technique alone, {size} px, {machine['renderer']}, {machine['cores']} cores"
     noise = float(np.median([line["reference_standard_error"] for line in errors]))
     (folder / "table.md").write_text(
-        f"{title}\n\n{_note(errors, noise, unit, frames)}\n\n{table(rows)}\n{by_preset(scene, errors)}", encoding="utf-8"
+        f"{title}\n\n{_note(errors, noise, unit, frames)}\n\n{table(rows)}\n"
+        f"{by_preset(scene, errors)}", encoding="utf-8"
     )
     figure = chart(rows, title)
     FigureCanvasAgg(figure)
