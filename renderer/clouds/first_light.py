@@ -80,6 +80,7 @@ class Land:
 
 GROUNDS: list[tuple[Arrays, tuple[Any, ...], Land]] = []
 LAYERS: list[tuple[Arrays, tuple[Any, ...], np.ndarray]] = []
+WEATHERS: list[tuple[Arrays, tuple[Any, ...], np.ndarray]] = []
 
 
 def places(wide: float) -> np.ndarray:
@@ -142,6 +143,18 @@ def _kept(known: list[tuple[Arrays, tuple[Any, ...], Any]], arrays: Arrays, key:
     return made
 
 
+def _weather(state: CloudsState, fields: Arrays) -> np.ndarray:
+    """What the weather leaves of the layer over the places, (P, P); the same for all moves, which it is wider than."""
+    planet, wide = state.planet, reach(state)
+
+    def make() -> np.ndarray:
+        systems = round_site(fields["systems"], planet.latitude, planet.longitude, planet.radius)
+        at = (0.5 + places(wide) / (4 * planet.radius)) * len(systems) - 0.5
+        return map_coordinates(systems, np.meshgrid(at, at, indexing="ij"), order=1, mode="nearest")
+
+    return _kept(WEATHERS, fields, (planet, wide), make)
+
+
 def depth_at(state: CloudsState, fields: Arrays, shift: tuple[float, float]) -> np.ndarray:
     """Optical depth of the layer over the sampled places moved by `shift` [m], (P, P)."""
     layer, clouds, time = state.layer, state.clouds, moment(state)
@@ -158,10 +171,7 @@ def depth_at(state: CloudsState, fields: Arrays, shift: tuple[float, float]) -> 
     found = np.ones((len(y), len(x))) if clouds.kind == "uniform" else found
     if clouds.kind == "asset" and not clouds.repeats:
         found *= ((v >= 0) & (v < texels))[:, None] & ((u >= 0) & (u < texels))[None, :]
-    systems = round_site(fields["systems"], state.planet.latitude, state.planet.longitude, state.planet.radius)
-    at = [(0.5 + w / (4 * state.planet.radius)) * len(systems) - 0.5 for w in (along + shift[1], along + shift[0])]
-    found *= map_coordinates(systems, np.meshgrid(*at, indexing="ij"), order=1, mode="nearest")
-    return layer.extinction * layer.thickness * found
+    return layer.extinction * layer.thickness * found * _weather(state, fields)
 
 
 def bounce_maps(state: CloudsState, baked: Mapping[str, Arrays]) -> BounceMaps:
