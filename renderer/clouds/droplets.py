@@ -62,7 +62,7 @@ class Droplets(Model):
         cost="bake",
         ge=1,
         le=30,
-        source="Belcour 2009, figure 2.5",
+        source="Belcour 2009, figure 2.5 (errata 001-23)",
     )
     distribution: Distribution = param(
         "normal", label="Distribution", help="How the number of droplets spreads over radii.", cost="bake"

@@ -7,14 +7,14 @@ from typing import Any, ClassVar, Literal
 
 import numpy as np
 
-from renderer.clouds.droplets import Distribution, Droplets
+from renderer.clouds.droplets import Droplets
 from renderer.clouds.phase_tables import bake_droplets
 from renderer.clouds.technique import PhaseTechnique, padded
 from renderer.core.params import bake_arguments, param
 from renderer.core.technique import Arrays, Bake
 
 
-class Mie(PhaseTechnique):
+class Mie(Droplets, PhaseTechnique):
     """Forward peak, fogbow and glory as the droplets' size makes them."""
 
     title: ClassVar[str] = "Mie"
@@ -23,28 +23,6 @@ class Mie(PhaseTechnique):
     textures: ClassVar[Mapping[str, str]] = {"table": "sampler2D"}
 
     kind: Literal["mie"] = "mie"
-    radius: float = param(
-        Droplets.model_fields["radius"].default,
-        label="Droplet radius",
-        help="Mean radius of the droplets; the median of a lognormal distribution.",
-        unit="um",
-        cost="bake",
-        ge=1,
-        le=30,
-        source="Belcour 2009, figure 2.5 (errata 001-23)",
-    )
-    distribution: Distribution = param(
-        "normal", label="Distribution", help="How the number of droplets spreads over radii.", cost="bake"
-    )
-    width: float = param(
-        0.1,
-        label="Width",
-        help="Standard deviation of the radii over their mean.",
-        unit="ratio",
-        cost="bake",
-        ge=0.005,
-        le=0.5,
-    )
     sun_disc: bool = param(
         True, label="Disc of the sun", help="Whether rings are blurred by the sun's own size.", cost="bake"
     )
