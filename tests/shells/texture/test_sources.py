@@ -1,0 +1,130 @@
+"""Every source of 3D texture: what it promises of its arrays, and what it refuses."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from pydantic import TypeAdapter
+
+from renderer.core.cache import AssetStore
+from renderer.core.errors import AssetError
+from renderer.core.params import union_members
+from renderer.shells.texture.block import opacity_at, texture_of
+from renderer.shells.texture.source import Procedure, Source
+from renderer.shells.texture.sources import Texture, bake_texture, moment_of, texture_bake
+
+SMALL = {"across": 32, "layers": 8}
+COARSE: dict[str, dict[str, object]] = {"fur": {"strands": 10}}
+"""What makes details larger than a voxel of a small block."""
+PROCEDURES = sorted(kind for kind, model in union_members(Texture).items() if issubclass(model, Procedure))
+
+
+def source(**said: object) -> Source:
+    made: Source = TypeAdapter(Texture).validate_python(said)
+    return made
+
+
+def baked(**said: object) -> dict[str, np.ndarray]:
+    return dict(bake_texture(texture_bake(source(**said)).arguments, {}, lambda fraction, words: None))
+
+
+@pytest.mark.parametrize("kind", PROCEDURES)
+def test_a_procedure_keeps_its_promises(kind: str) -> None:
+    block = baked(kind=kind, **SMALL)
+    assert block["colour"].shape == block["normal"].shape == (8, 32, 32, 4)
+    assert block["material"].shape == (8, 32, 32)
+    assert block["colour"].min() >= 0
+    assert block["colour"].max() <= 1
+    length = np.linalg.norm(block["normal"][..., :3].astype(float), axis=-1)
+    assert np.all((length < 1e-6) | (np.abs(length - 1) < 2e-3))
+    assert np.all((block["material"] > 0) == (block["colour"][..., 3] > 0))
+    assert (block["material"] > 0).any()
+    np.testing.assert_allclose(block["size"], [4, 4, 1])
+    again = baked(kind=kind, **SMALL)
+    assert all(np.array_equal(block[name], again[name]) for name in block)
+
+
+def likeness(colour: np.ndarray, axis: int) -> np.ndarray:
+    """Correlation of each slice across an axis with the next, the last one's with the first."""
+    slices = np.moveaxis(colour, axis, 0).reshape(colour.shape[axis], -1).astype(float)
+    slices = slices - slices.mean(axis=0)
+    slices /= np.linalg.norm(slices, axis=1, keepdims=True)
+    return (slices * np.roll(slices, -1, axis=0)).sum(axis=1)
+
+
+@pytest.mark.parametrize("kind", sorted(set(PROCEDURES) - {"uniform"}))
+def test_a_procedure_repeats_without_a_seam(kind: str) -> None:
+    """The last slice is as like the first as any slice is like the next; one cut out of the block is not."""
+    block = baked(kind=kind, across=64, layers=16, **COARSE.get(kind, {}))
+    colour = np.concatenate([block["colour"], block["normal"]], axis=-1)
+    for axis in (1, 2):
+        alike = likeness(colour, axis)
+        assert alike[-1] >= alike[:-1].min() - 0.1
+    cut = likeness(colour[:, :, :41], 2)
+    assert cut[-1] < cut[:-1].min() - 0.1
+
+
+def test_a_uniform_absorber_has_its_optical_depth() -> None:
+    said = source(kind="uniform", optical_depth=1.3)
+    texture = texture_of(bake_texture(texture_bake(said).arguments, {}, lambda *_: None), 0.25, **moment_of(said))
+    np.testing.assert_allclose(texture.extinction().mean() * 0.25, 1.3, rtol=1e-6)
+
+
+def test_fur_grows_and_thickens() -> None:
+    fur = baked(kind="fur", **SMALL)
+    held = [float(opacity_at(fur, growth=growth).sum()) for growth in (0.0, 0.3, 0.6, 1.0)]
+    assert held[0] == 0
+    assert held[0] < held[1] < held[2] < held[3]
+    tops = [np.flatnonzero(opacity_at(fur, growth=growth).any(axis=(1, 2))).max() for growth in (0.3, 0.6, 1.0)]
+    assert tops[0] < tops[1] < tops[2]
+    share = opacity_at(fur, density=0.5).sum() / opacity_at(fur).sum()
+    assert 0.4 < share < 0.6
+    assert opacity_at(fur, density=0.0).max() == 0
+
+
+def test_the_jelly_fades_and_the_balls_stay() -> None:
+    said = source(kind="jelly", second_opacity=0.25, **SMALL)
+    jelly = baked(kind="jelly", **SMALL)
+    faded = texture_of(jelly, 1.0, **moment_of(said)).colour[..., 3]
+    full = jelly["colour"][..., 3]
+    second = jelly["material"] == 2
+    np.testing.assert_allclose(faded[second], 0.25 * full[second], rtol=1e-6)
+    np.testing.assert_array_equal(faded[~second], full[~second])
+
+
+@pytest.fixture
+def kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[..., str]:
+    """Keeps arrays as an uploaded volume and says its name."""
+    monkeypatch.setenv("UMBRAGE_CACHE", str(tmp_path))
+
+    def keep(**arrays: np.ndarray) -> str:
+        file = io.BytesIO()
+        np.savez(file, **arrays)
+        return "asset:" + AssetStore().put(file.getvalue(), "volume", "own.npz")
+
+    return keep
+
+
+def test_a_volume_of_ones_own_goes_in(kept: Callable[..., str]) -> None:
+    rng = np.random.Generator(np.random.PCG64(3))
+    rgba = rng.random((3, 4, 5, 4))
+    name = kept(rgba=rgba, alpha=np.array("straight"), reference_length=np.array(0.02))
+    block = baked(kind="asset", asset=name)
+    np.testing.assert_allclose(block["colour"], rgba, rtol=3e-7)
+    texture = texture_of(block, 5.0)
+    assert texture.reference_length == 0.02
+    np.testing.assert_allclose(texture.size, [0.1, 0.08, 0.06])
+    np.testing.assert_allclose(
+        texture.extinction(), -np.log(1 - np.minimum(rgba[..., 3], 1 - 2.0**-12)) / 0.02, rtol=1e-5
+    )
+
+
+def test_what_a_volume_lacks_is_said_in_words(kept: Callable[..., str]) -> None:
+    with pytest.raises(AssetError, match=r"texture\.reading\.reference_length"):
+        baked(kind="asset", asset=kept(rgba=np.ones((2, 2, 2, 4))))
+    with pytest.raises(AssetError, match=r"texture\.asset"):
+        baked(kind="asset", asset="asset:" + "0" * 64)
