@@ -18,9 +18,10 @@ import numpy as np
 from renderer.choices import Choice, choices_of
 from renderer.comparing import converged, displayed, truth
 from renderer.core.errors import InputError
-from renderer.core.failure import Failure
+from renderer.core.failure import Charted, ChartedFailure, Failure
 from renderer.core.registry import phenomenon, techniques
 from renderer.steadying import Plan, places, with_choice
+from renderer.study.failure_chart import failure_chart
 from renderer.study.metrics import relative_rmse, stained
 from renderer.study.stability import changes, flicker
 from renderer.truth import Judge, Truth
@@ -31,6 +32,7 @@ if TYPE_CHECKING:
     from renderer.session import Session
 
 Tell = Callable[[float, str], None]
+Case = Failure | ChartedFailure
 
 LITTLE = (288, 162)
 """Width and height of either half of a case's picture."""
@@ -42,10 +44,11 @@ class Verdict:
 
     Attributes:
         failure: the case. failing, surviving: the symptom of either.
-        picture: JPEG of both side by side: the pictures, or what flickers in their worst step, brighter in red.
+        picture: JPEG of both side by side: the pictures, or what flickers in their worst step, brighter in red; of a
+            case that has none, the PNG of its chart.
     """
 
-    failure: Failure
+    failure: Case
     failing: float
     surviving: float
     picture: bytes = field(default=b"", repr=False)
@@ -60,7 +63,7 @@ class Verdict:
         return document(self.failure, {"failing_now": self.failing, "surviving_now": self.surviving})
 
 
-def document(case: Failure, measured: Mapping[str, Any] | None = None) -> dict[str, Any]:
+def document(case: Case, measured: Mapping[str, Any] | None = None) -> dict[str, Any]:
     """A case as JSON values, with what was measured of it since it was written, if anything."""
     found = {**asdict(case), **dict.fromkeys(NOW), "holds": None}
     if measured is not None:
@@ -77,15 +80,20 @@ def keep(folder: Path, verdicts: Sequence[Verdict], machine: Mapping[str, Any]) 
     for verdict in verdicts:
         name = verdict.failure.name
         known[name] = {**verdict.document(), "machine": dict(machine)}
-        (folder / f"{name}.jpg").write_bytes(verdict.picture)
+        (folder / picture_name(verdict.failure)).write_bytes(verdict.picture)
     path.write_text(json.dumps(list(known.values()), indent=1), encoding="utf-8")
+
+
+def picture_name(case: Case) -> str:
+    """The file that shows a case."""
+    return f"{case.name}.{'png' if isinstance(case, ChartedFailure) else 'jpg'}"
 
 
 NOW = ("failing_now", "surviving_now")
 """Names of what was measured last."""
 
 
-def failures(scene: str) -> dict[str, Failure]:
+def failures(scene: str) -> dict[str, Case]:
     """The cases of a scene by name; none where it has no catalogue.
 
     Raises:
@@ -109,8 +117,8 @@ def choices_in(scene: str, case: Failure) -> tuple[Choice, ...]:
     return choices_of(scene, case.slot, f"{case.failing},{case.surviving}")
 
 
-def opened(session: Any, scene: str, case: Failure) -> dict[str, Any]:
-    """A case as a viewer opens it.
+def opened(session: Any, scene: str, case: Case) -> dict[str, Any]:
+    """A case as a viewer opens it; one that has a chart has no state.
 
     Args:
         session: of which `state` and `validate` are asked.
@@ -119,6 +127,8 @@ def opened(session: Any, scene: str, case: Failure) -> dict[str, Any]:
         `state`, where it fails; `patch`, which makes that the surviving one; `words` for either technique; and `moves`,
         a merge patch for each further place of its sweep.
     """
+    if isinstance(case, ChartedFailure):
+        return {"state": None, "patch": None, "words": [case.failing, case.surviving], "moves": []}
     plan = plan_of(scene, case)
     states = places(session, plan)[: None if case.sweep else 1]
     pair = choices_in(scene, case)
@@ -143,6 +153,22 @@ def judge(session: Session, scene: str, name: str, tell: Tell | None = None) -> 
     if name not in known:
         raise InputError("failure", f"{scene} has no such case", ", ".join(known))
     case = known[name]
+    if isinstance(case, ChartedFailure):
+        if tell is not None:
+            tell(0.0, name)
+        numbers = charted(case)
+        return Verdict(case, numbers.failing, numbers.surviving, failure_chart(case, numbers))
+    return _judged(session, scene, case, tell)
+
+
+def charted(case: ChartedFailure) -> Charted:
+    """What a case without a picture measures."""
+    module, _, name = case.measure.partition(":")
+    found: Charted = getattr(importlib.import_module(module), name)()
+    return found
+
+
+def _judged(session: Session, scene: str, case: Failure, tell: Tell | None) -> Verdict:
     plan = plan_of(scene, case)
     states = places(session, plan)[: None if case.sweep else 1]
     against: Judge = "combination" if case.slot == "light" else "shadow"
@@ -152,7 +178,7 @@ def judge(session: Session, scene: str, name: str, tell: Tell | None = None) -> 
         drawn = [with_choice(session, plan, state, choice) for state in states]
         for turn, state in enumerate(drawn[len(truths) :]):
             if tell is not None:
-                tell(0.5 * turn / len(drawn), f"{name}: reference {turn + 1} of {len(drawn)}")
+                tell(0.5 * turn / len(drawn), f"{case.name}: reference {turn + 1} of {len(drawn)}")
             truths.append(truth(session, state, *plan.size, against))
         pictures = [converged(session, state, *plan.size).linear for state in drawn]
         found.append(symptom(case, pictures, truths))

@@ -15,6 +15,8 @@ from renderer import radiosity_ridges
 from renderer import radiosity_study as study
 from renderer.clouds.radiosity import numbers
 from renderer.core.cache import Cache
+from renderer.core.failure import ChartedFailure
+from renderer.failing import charted, document
 from renderer.radiosity_failures import CASES
 
 Lines = list[dict[str, Any]]
@@ -36,20 +38,16 @@ def run(folder: Path, rays: int, tell: Callable[[float, str], None]) -> str:
     """
     folder.mkdir(parents=True, exist_ok=True)
     parts: dict[str, Lines] = {"scenes": []}
-    last = None
     for case in study.cases(rays, Cache(), lambda share, words: tell(0.7 * share, words)):
         lines, fields = study.scene_lines(case)
         parts["scenes"] += lines
         _save(folder, f"profiles_{case.scene.name}", charts.profiles(case.scene.title, fields))
-        last = case
-    assert last is not None
     parts["ridges"] = radiosity_ridges.ridge_lines(
         max(rays // 8, 64), lambda share, words: tell(0.7 + 0.2 * share, words)
     )
     tell(0.9, "numbers of the thesis, failures")
     parts["numbers"] = [number.document() for number in numbers.numbers()]
-    ring = last
-    parts["failures"] = [failure.document(failure.measure(lambda: ring)) for failure in CASES]
+    parts["failures"] = [_failure(case) for case in CASES]
     parts["solving"] = [study.solving_time(squares, count) for squares, count in ((256, 15), (256, 64), (16, 256))]
     with (folder / "results.jsonl").open("w", encoding="utf-8") as file:
         for name, lines in parts.items():
@@ -64,6 +62,11 @@ def run(folder: Path, rays: int, tell: Callable[[float, str], None]) -> str:
     text = table(parts, rays)
     (folder / "table.md").write_text(text, encoding="utf-8")
     return text
+
+
+def _failure(case: ChartedFailure) -> dict[str, Any]:
+    now = charted(case)
+    return document(case, {"failing_now": now.failing, "surviving_now": now.surviving})
 
 
 def _save(folder: Path, name: str, figure: Figure) -> None:

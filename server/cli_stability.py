@@ -121,22 +121,20 @@ def list_failures(given: argparse.Namespace) -> int:
         failing.keep(folder, verdicts, machine)
         found = [verdict.document() for verdict in verdicts]
         if given.docs:
-            keep(
-                folder, DOCS / "study" / given.scene / "failures", tuple(sorted(path.name for path in folder.iterdir()))
-            )
+            failing.keep(DOCS / "study" / given.scene / "failures", verdicts, machine)
     print(json.dumps(found, indent=1) if given.json else "\n\n".join(map(_told, found)))
     return 0 if all(one["holds"] is not False for one in found) else 1
 
 
 def _told(case: Mapping[str, Any]) -> str:
     """A case as lines."""
-    moving = f", {case['sweep']} moving" if case["sweep"] else ""
+    where = f"{case['preset']}{', ' + case['sweep'] + ' moving' if case['sweep'] else ''}: " if "preset" in case else ""
     today = [case["failing_now"], case["surviving_now"]]
     failing, surviving = today if case["holds"] is not None else case["measured"]
     verdict = {None: "", True: " (measured now)", False: " (measured now: the case no longer holds)"}[case["holds"]]
     return (
         f"{case['name']}: {case['title']}\n"
-        f"  {case['preset']}{moving}: {case['symptom']} above {case['threshold']:g} is a failure{verdict}\n"
+        f"  {where}{case['symptom']} above {case['threshold']:g} is a failure{verdict}\n"
         f"  {failing:.3g} {case['failing']}\n"
         f"  {surviving:.3g} {case['surviving']}\n"
         f"  {case['cause']}"

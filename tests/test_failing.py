@@ -17,12 +17,22 @@ from PIL import Image
 from renderer import failing
 from renderer.choices import choices_of
 from renderer.core.errors import InputError
+from renderer.core.failure import Charted, ChartedFailure, Curve, Failure
 from renderer.core.registry import phenomena
 from renderer.failing import Verdict, failures, judge
 from renderer.session import Session
 from renderer.steadying import Plan, places, with_choice
 
-CASES = [(scene, name) for scene in phenomena() for name in failures(scene)]
+ALL = [(scene, name, case) for scene in phenomena() for name, case in failures(scene).items()]
+CASES = [(scene, name) for scene, name, case in ALL if isinstance(case, Failure)]
+CHARTED = [(scene, name) for scene, name, case in ALL if isinstance(case, ChartedFailure)]
+
+
+def pictured(scene: str, name: str) -> Failure:
+    case = failures(scene)[name]
+    assert isinstance(case, Failure)
+    return case
+DOCS = Path(__file__).parent.parent / "docs" / "study"
 
 
 class Pretended:
@@ -54,11 +64,12 @@ def real() -> Iterator[Session]:
 
 def test_there_is_a_catalogue() -> None:
     assert len(CASES) >= 12
+    assert len(CHARTED) >= 5
 
 
 @pytest.mark.parametrize(("scene", "name"), CASES)
 def test_a_case_is_whole(session: Any, scene: str, name: str) -> None:
-    case = failures(scene)[name]
+    case = pictured(scene, name)
     assert case.title
     assert case.cause.endswith(".")
     assert (case.symptom in ("flicker", "sway")) == bool(case.sweep)
@@ -67,6 +78,42 @@ def test_a_case_is_whole(session: Any, scene: str, name: str) -> None:
     both = choices_of(scene, case.slot, f"{case.failing},{case.surviving}")
     states = [with_choice(session, plan, places(session, plan)[-1], choice) for choice in both]
     assert getattr(states[0], case.slot) != getattr(states[1], case.slot)
+
+
+@pytest.mark.parametrize(("scene", "name"), CHARTED)
+def test_a_charted_case_is_whole(session: Any, scene: str, name: str) -> None:
+    case = failures(scene)[name]
+    assert isinstance(case, ChartedFailure)
+    assert case.title
+    assert case.cause.endswith(".")
+    assert case.measured[1] <= case.threshold < case.measured[0]
+    assert case.failing != case.surviving
+    assert failing.opened(session, scene, case)["state"] is None, "there is no picture of it"
+    assert failing.picture_name(case) == f"{name}.png"
+
+
+@pytest.mark.parametrize("scene", phenomena())
+def test_what_is_kept_of_each_case_still_holds(scene: str) -> None:
+    """Numbers and picture of every case lie in the documentation."""
+    folder = DOCS / scene / "failures"
+    kept = {one["name"]: one for one in json.loads((folder / "results.json").read_text(encoding="utf-8"))}
+    for name, case in failures(scene).items():
+        assert failing.document(case, kept[name])["holds"], name
+        assert (folder / failing.picture_name(case)).is_file(), name
+
+
+def test_a_charted_case_is_measured_and_drawn(session: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    place = np.arange(1.0, 4.0)
+    curves = (Curve("truth", place, place), Curve("failing", place, 2 * place), Curve("surviving", place, place))
+    monkeypatch.setattr(failing, "charted", lambda case: Charted(0.5, 0.001, curves, "x", "y", "xy"))
+    scene, name = CHARTED[0]
+    found = judge(session, scene, name)
+    assert (found.failing, found.surviving, found.holds) == (0.5, 0.001, True)
+    picture = np.asarray(Image.open(io.BytesIO(found.picture)).convert("RGB")).astype(int)
+    reddish = (picture[..., 0] - picture[..., 2] > 100).mean()
+    bluish = (picture[..., 2] - picture[..., 0] > 100).mean()
+    assert reddish > 1e-3
+    assert bluish > 1e-3
 
 
 def pretend(monkeypatch: pytest.MonkeyPatch, failing_error: float) -> list[str]:
@@ -117,7 +164,7 @@ def test_a_case_keeps_its_numbers_and_its_picture(
 
 
 def test_what_flickers_is_pictured_on_one_scale(session: Any) -> None:
-    case = failures("forest")["depth_map_scintillates"]
+    case = pictured("forest", "depth_map_scintillates")
     exact = [SimpleNamespace(linear=np.ones((27, 48, 4)))] * 2
 
     def shown(change: float) -> Any:
@@ -132,7 +179,7 @@ def test_what_flickers_is_pictured_on_one_scale(session: Any) -> None:
 @pytest.mark.parametrize(("symptom", "expected"), [("error", 0.5), ("stains", 0.25), ("sway", 0.25 / 1.125)])
 def test_the_number_of_a_case_is_its_symptoms(symptom: Any, expected: float) -> None:
     exact, picture = (np.array([row])[..., None] * np.ones(4) for row in ([0.5, 0.5, 1.5, 1.5], [1.5, 0.5, 1.5, 1.5]))
-    case = replace(failures("forest")["depth_map_shades_itself"], symptom=symptom)
+    case = replace(pictured("forest", "depth_map_shades_itself"), symptom=symptom)
     truths: Any = [SimpleNamespace(linear=exact)] * 2
     assert failing.symptom(case, [picture, exact], truths) == pytest.approx(expected)
 

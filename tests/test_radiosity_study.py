@@ -12,7 +12,9 @@ import pytest
 from renderer import radiosity_charts, radiosity_report, radiosity_ridges, radiosity_study
 from renderer.clouds.radiosity.bases import GRID, object_basis
 from renderer.core.cache import Cache
-from renderer.radiosity_failures import CASES, NumberCase
+from renderer.core.failure import ChartedFailure
+from renderer.failing import charted
+from renderer.radiosity_failures import CASES
 from renderer.radiosity_ridges import Ridge
 from renderer.radiosity_study import Case
 from server import cli
@@ -37,17 +39,12 @@ def level(name: str) -> Case:
     raise AssertionError(name)
 
 
-def no_ring() -> Case:
-    raise AssertionError("this case needs no rays")
-
-
 @pytest.mark.parametrize("case", CHEAP, ids=lambda case: case.name)
-def test_the_failing_one_fails_and_the_surviving_one_survives(case: NumberCase) -> None:
-    failing, surviving = case.measure(no_ring)
-    assert surviving <= case.threshold < failing
-    assert failing == pytest.approx(case.measured[0], rel=0.05)
-    assert surviving == pytest.approx(case.measured[1], rel=0.05, abs=1e-3)
-    assert case.document((failing, surviving))["holds"]
+def test_the_failing_one_fails_and_the_surviving_one_survives(case: ChartedFailure) -> None:
+    found = charted(case)
+    assert found.surviving <= case.threshold < found.failing
+    assert found.failing == pytest.approx(case.measured[0], rel=0.05)
+    assert found.surviving == pytest.approx(case.measured[1], rel=0.05, abs=1e-3)
 
 
 def test_an_error_is_relative_to_the_mean_over_what_is_drawn() -> None:
@@ -95,9 +92,9 @@ def test_scenes_of_relief_meet_the_target() -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("case", [case for case in CASES if case not in CHEAP], ids=lambda case: case.name)
-def test_failures_over_relief(case: NumberCase) -> None:
-    failing, surviving = case.measure(lambda: scenes(1024)[3])
-    assert surviving <= case.threshold < failing
+def test_failures_over_relief(case: ChartedFailure) -> None:
+    found = charted(case)
+    assert found.surviving <= case.threshold < found.failing
 
 
 def test_a_sunlit_ridge_is_no_level_ground() -> None:

@@ -7,6 +7,8 @@ const STEP_MS = 120;
 const SYMPTOMS = {
   flicker: "Flicker", sway: "Sway of the brightness", error: "Error", stains: "Pixels off by half of the mean",
 };
+/** Symptoms of pictures have a name; others are said in words. */
+const nameOf = (symptom) => SYMPTOMS[symptom] ?? symptom.charAt(0).toUpperCase() + symptom.slice(1);
 const percent = (value) => `${Number((100 * value).toPrecision(2))}\u00a0%`;
 const quiet = (...children) => el("p", { class: "hint-facts" }, children);
 
@@ -38,17 +40,20 @@ export class Studies {
   }
 
   card(found) {
-    const { title, symptom, threshold, cause, picture, words } = found;
+    const { title, symptom, threshold, cause, picture, words, state } = found;
     const values = numbers(found);
     const top = Math.max(...values, threshold) * 1.05;
     const share = (value) => `${(100 * value) / top}%`;
     const bar = (value, text) => [el("span", { class: "case-row" }, el("span", { text }), el("span", { text: percent(value) })),
       el("span", { class: "case-bar", data: { fails: value > threshold }, style: { backgroundSize: `2px, ${share(value)}`, backgroundPosition: `${share(threshold)} 0, 0 0` } })];
-    return el("button", { type: "button", class: "case", on: { click: () => this.show(found) } },
-      picture && el("img", { src: picture.slice(1), alt: "", loading: "lazy" }),
+    // What is a number and no picture has no state to open: its card is its chart.
+    const [tag, attributes] = state ? ["button", { type: "button", on: { click: () => this.show(found) } }] : ["article", {}];
+    const image = picture && el("img", { src: picture.slice(1), alt: state ? "" : `Chart: ${title}`, loading: "lazy" });
+    return el(tag, { class: "case", ...attributes },
+      image && (state ? image : el("a", { href: picture.slice(1), target: "_blank", rel: "noopener" }, image)),
       el("strong", { text: title }),
       ...values.flatMap((value, i) => bar(value, words[i])),
-      quiet(`${SYMPTOMS[symptom]}${found.sweep ? ` while the ${humanise(found.sweep).toLowerCase()} moves` : ""}; above ${percent(threshold)} it is a failure. `, cause));
+      quiet(`${nameOf(symptom)}${found.sweep ? ` while the ${humanise(found.sweep).toLowerCase()} moves` : ""}; above ${percent(threshold)} it is a failure. `, cause));
   }
 
   /** The case's own state, what fails as A, what survives as B. */
@@ -56,7 +61,7 @@ export class Studies {
     const { title, cause, moves, state, patch, words, threshold, symptom } = found;
     const [failing, surviving] = numbers(found).map(percent);
     const note = [el("h3", { text: title }), el("p", { text: cause }),
-      quiet(`${SYMPTOMS[symptom]}: ${failing} for A, ${surviving} for B; above ${percent(threshold)} it is a failure.`),
+      quiet(`${nameOf(symptom)}: ${failing} for A, ${surviving} for B; above ${percent(threshold)} it is a failure.`),
       moves.length ? el("button", { type: "button", class: "wide", text: "Play the sweep", on: { click: () => this.play(found) } }) : ""];
     this.open({ state, patch, words, note });
   }

@@ -1,8 +1,8 @@
-"""Where the clouds' techniques fail in a picture: the cases of their catalogue."""
+"""Where the clouds' techniques fail, in a picture or in a number: the cases of their catalogue."""
 
 from __future__ import annotations
 
-from renderer.core.failure import Failure
+from renderer.core.failure import ChartedFailure, Failure
 
 FAILURES = (
     Failure(
@@ -64,5 +64,72 @@ FAILURES = (
         threshold=0.21,
         measured=(0.289, 0.142),
         cause="Light leaves a thin layer after one or two turns, and has not spread as a diffuse flux supposes.",
+    ),
+    ChartedFailure(
+        name="truncated_disc",
+        title="A disc of radius 4H is too small to compute on",
+        failing="planes cut at 4H",
+        surviving="planes cut at 16H",
+        symptom="error of the ground's radiosity in the middle, 4 bounces",
+        threshold=0.02,
+        measured=(0.1204, 0.0072),
+        cause="Each half-bounce loses what comes from beyond the disc, and what its rim lacks is missing in the next.",
+        measure="renderer.radiosity_failures:truncated_disc",
+    ),
+    ChartedFailure(
+        name="basis_too_coarse",
+        title="A basis coarser than a mountain spreads its influence",
+        failing="blocks of 4H (64 coefficients)",
+        surviving="256 wavelets chosen by the light",
+        symptom="relative RMSE of the ground's radiosity against the truth averaged over the basis' cells, "
+        "ring of bright mountains",
+        threshold=0.03,
+        measured=(0.0862, 0.0245),
+        cause="Within a block snow and dark ground share one number, so the clouds over either are lit alike.",
+        measure="renderer.radiosity_failures:coarse_basis",
+    ),
+    ChartedFailure(
+        name="three_levels_over_relief",
+        title="Form factors of level planes do not know mountains",
+        failing="three levels (taps)",
+        surviving="transfer matrices of 256 wavelets",
+        symptom="relative RMSE of the ground's radiosity in means over 2H, ring of bright mountains",
+        threshold=0.035,
+        measured=(0.0487, 0.0233),
+        cause="Slopes see less cloud, stand nearer to it and light each other; level planes have none of it.",
+        measure="renderer.radiosity_failures:three_levels",
+    ),
+    ChartedFailure(
+        name="albedo_near_one",
+        title="Four bounces are not enough over snow",
+        failing="4 bounces",
+        surviving="direct solution",
+        symptom="share of the light left out, albedo and reflectance 0.9",
+        threshold=0.05,
+        measured=(0.349, 0.0),
+        cause="Each bounce leaves R rho of the last one's light, and 0.81^5 of all is still to come.",
+        measure="renderer.radiosity_failures:albedo_near_one",
+    ),
+    ChartedFailure(
+        name="broken_edges",
+        title="A few blocks blur the edges of broken clouds",
+        failing="15 blocks",
+        surviving="256 wavelets chosen by the light",
+        symptom="relative RMSE of the base's radiosity, place by place, clouds and gaps of 2.5H",
+        threshold=0.5,
+        measured=(0.757, 0.336),
+        cause="A block holds cloud and gap in one number.",
+        measure="renderer.radiosity_failures:broken_edges",
+    ),
+    ChartedFailure(
+        name="plane_at_the_horizon",
+        title="A flat layer has no end at the horizon",
+        failing="thickness over cosine",
+        surviving="the shell's own length",
+        symptom="relative error of a ray's way through 250 m of cloud, 0.1 degrees above the horizontal of its base",
+        threshold=0.05,
+        measured=(2.09, 0.0),
+        cause="Thickness over cosine grows without end, where the Earth's curve ends every ray's way.",
+        measure="renderer.slab_failures:plane_at_the_horizon",
     ),
 )

@@ -6,6 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
+import numpy as np
+
 Symptom = Literal["flicker", "sway", "error", "stains"]
 """What is measured, against exact shadows under the picture's own light; of a light technique, against all the truth.
 
@@ -45,3 +47,55 @@ class Failure:
     width: int = 48
     steps: int = 4
     stride: float = 1.0
+
+
+Part = Literal["failing", "surviving", "truth"]
+
+
+@dataclass(frozen=True)
+class ChartedFailure:
+    """One named failure whose symptom is a number that no picture has: it shows a chart.
+
+    Attributes:
+        name, title, threshold, measured, cause: as of `Failure`.
+        failing, surviving: either technique, in words.
+        symptom: what is measured, in words; a share.
+        measure: function that measures both, as `module:name`; it answers `Charted`.
+    """
+
+    name: str
+    title: str
+    failing: str
+    surviving: str
+    symptom: str
+    threshold: float
+    measured: tuple[float, float]
+    cause: str
+    measure: str
+
+
+@dataclass(frozen=True)
+class Curve:
+    """One line of a chart: whose it is, its points (N,), and what it says instead of the technique's words."""
+
+    part: Part
+    x: np.ndarray
+    y: np.ndarray
+    label: str = ""
+
+
+@dataclass(frozen=True)
+class Charted:
+    """What a charted failure measures today.
+
+    Attributes:
+        failing, surviving: the symptom of either.
+        curves: of the chart. x, y: its axes in words. log: axes with a logarithmic scale, "", "x", "y" or "xy".
+    """
+
+    failing: float
+    surviving: float
+    curves: tuple[Curve, ...]
+    x: str
+    y: str
+    log: Literal["", "x", "y", "xy"] = ""

@@ -88,9 +88,10 @@ def _failures(session: RenderSession, folder: str, scene: str) -> list[dict[str,
         {
             **failing.document(case, measured.get(name)),
             **failing.opened(session, scene, case),
-            "picture": f"/api/study/{scene}/{picture}" if (picture := f"failures/{name}.jpg") in files else None,
+            "picture": f"/api/study/{scene}/{picture}" if picture in files else None,
         }
         for name, case in cases.items()
+        for picture in [f"failures/{failing.picture_name(case)}"]
     ]
 
 

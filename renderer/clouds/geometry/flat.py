@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import ClassVar, Literal
 
+import numpy as np
+
 from renderer.clouds.technique import CloudsTechnique
 
 
@@ -17,3 +19,8 @@ class Flat(CloudsTechnique):
     paper: ClassVar[str] = "Bouthors, Neyret and Lefebvre 2006; Belcour 2009, section 4.2.4"
 
     kind: Literal["flat"] = "flat"
+
+    @staticmethod
+    def slant(mu: np.ndarray, radius: float, base: float, thickness: float) -> np.ndarray:
+        """Metres through a layer of rays with such cosines at its base, in the precision of these."""
+        return thickness / mu

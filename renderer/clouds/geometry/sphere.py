@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import ClassVar, Literal
 
+import numpy as np
+
 from renderer.clouds.technique import CloudsTechnique
 
 
@@ -17,3 +19,10 @@ class Sphere(CloudsTechnique):
     paper: ClassVar[str] = "Belcour 2009, section 4.2"
 
     kind: Literal["sphere"] = "sphere"
+
+    @staticmethod
+    def slant(mu: np.ndarray, radius: float, base: float, thickness: float) -> np.ndarray:
+        """Metres through a layer of rays with such cosines at its base, in the precision of these (formulas a8)."""
+        low, high = mu.dtype.type(radius + base), mu.dtype.type(thickness)
+        square = high * (2 * low + high)
+        return np.asarray(square / (np.sqrt(square + low * low * mu * mu) + low * mu))
