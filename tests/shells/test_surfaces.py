@@ -1,0 +1,99 @@
+"""Built-in surfaces: their sizes, counts and closedness, and texture coordinates that span every face."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+from renderer.core.params import bake_arguments
+from renderer.shells.base_mesh import BaseMesh, face_vectors, flat_uv, from_corners, vertex_normals
+from renderer.shells.surfaces import Plane, Sphere, Tube, bake_surface, surface_of
+from renderer.world.mesh import is_watertight
+
+
+def baked(surface: Any) -> BaseMesh:
+    return surface_of(bake_surface(bake_arguments(surface), {}, lambda *_: None))
+
+
+def volume(mesh: BaseMesh) -> float:
+    a, b, c = (mesh.vertices[mesh.faces[:, k]] for k in range(3))
+    return float(np.einsum("fk,fk->", a, np.cross(b, c)) / 6)
+
+
+def euler(mesh: BaseMesh) -> int:
+    edges = np.sort(np.stack([mesh.faces, np.roll(mesh.faces, -1, axis=1)], axis=-1).reshape(-1, 2), axis=1)
+    return len(mesh.vertices) - len(np.unique(edges, axis=0)) + len(mesh.faces)
+
+
+@pytest.mark.parametrize(("surface", "triangles", "closed", "holes"), [
+    (Plane(), 32, False, 1),
+    (Sphere(), 1200, True, 2),
+    (Sphere(layout="globe"), 1520, True, 2),
+    (Tube(), 120, False, 0),
+], ids=lambda value: getattr(value, "kind", None))
+def test_the_built_in_surfaces_are_whole(surface: Any, triangles: int, closed: bool, holes: int) -> None:
+    mesh = baked(surface)
+    assert len(mesh.faces) == triangles
+    assert is_watertight(mesh.vertices, mesh.faces) == closed
+    assert euler(mesh) == holes
+    assert len(flat_uv(mesh.corner_uv)) == 0
+    assert mesh.notes == ()
+    extent = np.ptp(mesh.vertices, axis=0)
+    assert 0.5 < extent.max() <= 2.0
+
+
+def test_a_finer_sphere_nears_its_volume() -> None:
+    for layout in ("cube", "globe"):
+        coarse, fine = (volume(baked(Sphere(layout=layout, radius=1, divisions=n))) for n in (8, 16))
+        ball = 4 / 3 * math.pi
+        assert fine == pytest.approx(ball, rel=0.01)
+        assert (ball - coarse) / (ball - fine) == pytest.approx(4, rel=0.05)
+
+
+def test_texture_repeats_as_often_as_asked() -> None:
+    for kind in (Plane, Tube, Sphere):
+        more = {"layout": "globe"} if kind is Sphere else {}
+        uv = baked(kind(repeat_u=3, repeat_v=2, **more)).corner_uv
+        np.testing.assert_allclose((uv.min(axis=(0, 1)), uv.max(axis=(0, 1))), ((0, 0), (3, 2)))
+    a, b = np.moveaxis(np.diff(baked(Sphere()).corner_uv, axis=1), 1, 0)
+    area = (a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]) / 2
+    assert area.sum() == pytest.approx(6), "each square of the cube has the whole texture"
+
+
+def test_texture_is_no_mirror_image() -> None:
+    """u to the right and v upwards, seen from the front: the front is where u turns to v counter-clockwise."""
+    for surface in (Plane(), Sphere(), Sphere(layout="globe"), Tube()):
+        a, b = np.moveaxis(np.diff(baked(surface).corner_uv, axis=1), 1, 0)
+        assert (a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0] > 0).all(), surface
+
+
+def test_the_tube_is_a_cylinder() -> None:
+    mesh = baked(Tube(radius=0.5, length=2, around=48, along=4))
+    np.testing.assert_allclose(np.hypot(*mesh.vertices[:, :2].T), 0.5)
+    np.testing.assert_allclose(np.unique(np.round(mesh.vertices[:, 2], 9)), (-1, -0.5, 0, 0.5, 1))
+    normal = vertex_normals(mesh.vertices, mesh.faces)
+    np.testing.assert_allclose(np.einsum("vk,vk->v", normal[:, :2], mesh.vertices[:, :2]) / 0.5, 1, atol=0.01)
+
+
+def test_normals_do_not_depend_on_how_a_square_is_cut() -> None:
+    """Three sides of a cube meet: by angles the normal is the diagonal, however many triangles each side has there."""
+    x = np.array([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 1, 0), (0, 1, 1), (1, 0, 1)], float)
+    faces = np.array([(0, 2, 4), (0, 4, 1), (0, 1, 6), (0, 6, 3), (0, 3, 2), (2, 3, 5)])
+    np.testing.assert_allclose(vertex_normals(x, faces)[0], np.full(3, -1 / math.sqrt(3)), atol=1e-12)
+    by_area = face_vectors(x, faces)[:5].sum(axis=0)
+    assert abs(by_area / np.linalg.norm(by_area) + 1 / math.sqrt(3)).max() > 0.1, "areas would lean it"
+
+
+def test_corners_at_one_place_become_one_vertex() -> None:
+    one, other = [(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(1, 0, 1e-9), (1, 1, 0), (-0.0, 1, 0)]
+    corners = np.array([one, other, [(2, 2, 2), (2, 2, 2), (0, 0, 0)]])
+    uv = np.arange(18.0).reshape(3, 3, 2)
+    apart = from_corners(corners, uv)
+    assert len(apart.vertices) == 5
+    assert "1 faces" in apart.notes[0]
+    joined = from_corners(corners, uv, tolerance=1e-6)
+    np.testing.assert_array_equal(joined.faces, ((0, 1, 2), (1, 3, 2)))
+    np.testing.assert_array_equal(joined.corner_uv, uv[:2])
