@@ -128,14 +128,41 @@ def thickness_map(clouds: Any, baked: Mapping[str, np.ndarray], time: float) -> 
         return np.ones((4, 4), np.float32)
     if clouds.kind == "asset":
         return np.asarray(fields[0])
+    now, later = turned(clouds, time)
+    return _thickness(clouds, fields[0] * now + fields[1] * later).astype(np.float32)
+
+
+def turned(clouds: Any, time: float) -> tuple[float, float]:
+    """Shares of the two fields at a moment [s]."""
+    if clouds.kind != "procedural":
+        return 1.0, 0.0
     turn = 2.0 * math.pi * time * clouds.evolution / LIFETIME / 4.0
-    field = fields[0] * math.cos(turn) + fields[1] * math.sin(turn)
+    return math.cos(turn), math.sin(turn)
+
+
+def _thickness(clouds: Any, field: np.ndarray) -> np.ndarray:
+    """Thickness where the field has some value, as a share of the layer's."""
     # The cover's share of a normal distribution lies above the threshold; edges rise softly, and tops vary.
     threshold = math.sqrt(2.0) * float(erfinv(np.clip(1.0 - 2.0 * clouds.cover, -0.9999999, 0.9999999)))
     above = (field - threshold) / EDGE
     rise = np.where(above > 0.0, -np.expm1(-np.abs(above)), np.expm1(-np.abs(above)))
     swell = SWELLS * np.tanh(field / SWELLS)
-    return (rise * np.exp(clouds.variation * swell - 0.5 * clouds.variation**2)).astype(np.float32)
+    return np.asarray(rise * np.exp(clouds.variation * swell - 0.5 * clouds.variation**2))
+
+
+CURVE = 4096
+"""Entries of the thickness as a curve: it then errs by 2e-5 of the layer's at most."""
+
+FIELD = 8.0
+"""Standard deviations of the field that the curve covers on either side."""
+
+
+def thickness_curve(clouds: Any) -> tuple[np.ndarray, float, float]:
+    """The same as a table (M,) float32 by the fields' sum, the value of its first entry, and entries for each unit."""
+    if clouds.kind != "procedural":
+        return np.array([0.0, THICKEST], np.float32), 0.0, 1.0 / THICKEST
+    field = np.linspace(-FIELD, FIELD, CURVE + 1)
+    return _thickness(clouds, field).astype(np.float32), -FIELD, CURVE / (2 * FIELD)
 
 
 def highest(clouds: Any, baked: Mapping[str, np.ndarray]) -> float:

@@ -15,8 +15,8 @@ import numpy as np
 from scipy.ndimage import map_coordinates
 
 from renderer.clouds.air import MARGIN
-from renderer.clouds.cloud_map import thickness_map
-from renderer.clouds.first_light_kernel import DEPTHS, read
+from renderer.clouds.cloud_map import thickness_curve, turned
+from renderer.clouds.first_light_kernel import DEPTHS, gather, light_cells
 from renderer.clouds.land import horizon_towards
 from renderer.clouds.radiosity.maps import BounceMaps, square_cells
 from renderer.clouds.weather import round_site
@@ -70,12 +70,15 @@ class Land:
     """The ground of the square at `WITHIN` places a cell and side.
 
     Attributes:
-        height: m, (P, P), row 0 at the south. albedo: (P, P, 3). rise: to the east and to the north, (2, P, P).
+        height: m, means over cells (GRID, GRID), row 0 at the south. albedo: (P, P, 3).
+        slopes: rise to the east and to the north, and one over the normal's length, (P, P, 3).
+        nodes: of the land, two of its own wide, at the places along either axis, (P,); -1 beyond its edge.
     """
 
     height: np.ndarray
     albedo: np.ndarray
-    rise: np.ndarray
+    slopes: np.ndarray
+    nodes: np.ndarray
 
 
 GROUNDS: list[tuple[Arrays, tuple[Any, ...], Land]] = []
@@ -105,19 +108,15 @@ def land_of(land: Arrays, planet: Mapping[str, Any], wide: float) -> Land:
     heights = np.asarray(land["height"], np.float64)
     coarse = heights.reshape(len(heights) // 2, 2, -1, 2).mean(axis=(1, 3))
     north, east = np.gradient(coarse, 2 * LAND_CELL)
-    height = _sampled(coarse, wide, 0.0)
+    nodes = np.floor(places(wide) / (2 * LAND_CELL) + len(coarse) / 2).astype(np.int32)
+    nodes[(nodes < 0) | (nodes >= len(coarse))] = -1
+    inside = (nodes[:, None] >= 0) & (nodes[None, :] >= 0)
+    height, east, north = (np.where(inside, field[np.ix_(nodes, nodes)], 0.0) for field in (coarse, east, north))
     t = np.clip((height - planet["snow_line"]) / 120 + 0.5, 0, 1)
     snow = (t * t * (3 - 2 * t))[..., None]
     albedo = np.array(planet["albedo"]) * (1 - snow) + np.array(planet["snow_albedo"]) * snow
-    return Land(height, albedo, np.stack([_sampled(east, wide, 0.0), _sampled(north, wide, 0.0)]))
-
-
-def _sampled(field: np.ndarray, wide: float, beyond: float) -> np.ndarray:
-    """A field (N, N) over means of 2 x 2 of the land's nodes at the sampled places, and what lies beyond it."""
-    at = np.floor(places(wide) / (2 * LAND_CELL) + len(field) / 2).astype(int)
-    inside = (at >= 0) & (at < len(field))
-    rows, columns = np.ix_(np.clip(at, 0, len(field) - 1), np.clip(at, 0, len(field) - 1))
-    return np.where(inside[:, None] & inside[None, :], field[rows, columns], beyond)
+    slopes = np.stack([east, north, 1 / np.sqrt(1 + east**2 + north**2)], axis=-1)
+    return Land(cells(height), albedo, slopes.astype(np.float32), nodes)
 
 
 def _ground(state: CloudsState, land: Arrays) -> Land:
@@ -150,7 +149,8 @@ def _weather(state: CloudsState, fields: Arrays) -> np.ndarray:
     def make() -> np.ndarray:
         systems = round_site(fields["systems"], planet.latitude, planet.longitude, planet.radius)
         at = (0.5 + places(wide) / (4 * planet.radius)) * len(systems) - 0.5
-        return map_coordinates(systems, np.meshgrid(at, at, indexing="ij"), order=1, mode="nearest")
+        grid = np.meshgrid(at, at, indexing="ij")
+        return np.asarray(map_coordinates(systems, grid, order=1, mode="nearest"), np.float32)
 
     return _kept(WEATHERS, fields, (planet, wide), make)
 
@@ -158,20 +158,23 @@ def _weather(state: CloudsState, fields: Arrays) -> np.ndarray:
 def depth_at(state: CloudsState, fields: Arrays, shift: tuple[float, float]) -> np.ndarray:
     """Optical depth of the layer over the sampled places moved by `shift` [m], (P, P)."""
     layer, clouds, time = state.layer, state.clouds, moment(state)
-    side = 1000.0 if clouds.kind == "uniform" else clouds.side
+    weather, thickest = _weather(state, fields), layer.extinction * layer.thickness
+    if clouds.kind == "uniform":
+        return weather * np.float32(thickest)
     way, azimuth = layer.wind * time, math.radians(layer.wind_azimuth)
     along = places(reach(state))
     x = along + shift[0] - way * math.sin(azimuth)
     y = along + shift[1] - way * math.cos(azimuth)
     texels = fields["fields"].shape[1]
-    u, v = (np.floor((w / side + 0.5) * texels).astype(int) for w in (x, y))
-    # The map is made of its fields texel by texel, so those that are looked at suffice.
-    looked = {"fields": fields["fields"][:, v[:, None] % texels, u[None, :] % texels]}
-    found = np.maximum(thickness_map(clouds, looked, time), 0).astype(np.float64)
-    found = np.ones((len(y), len(x))) if clouds.kind == "uniform" else found
+    u, v = (np.floor((w / clouds.side + 0.5) * texels).astype(np.int64) for w in (x, y))
+    curve, lowest, finest = thickness_curve(clouds)
+    both = fields["fields"] if len(fields["fields"]) == 2 else np.repeat(fields["fields"], 2, axis=0)
+    turn = np.asarray(turned(clouds, time), np.float32)
+    axis = np.array([lowest, finest, thickest], np.float32)
+    found = gather(both, turn, v % texels, u % texels, curve, axis, weather)
     if clouds.kind == "asset" and not clouds.repeats:
         found *= ((v >= 0) & (v < texels))[:, None] & ((u >= 0) & (u < texels))[None, :]
-    return layer.extinction * layer.thickness * found * _weather(state, fields)
+    return np.asarray(found)
 
 
 def bounce_maps(state: CloudsState, baked: Mapping[str, Arrays]) -> BounceMaps:
@@ -191,28 +194,25 @@ def bounce_maps(state: CloudsState, baked: Mapping[str, Arrays]) -> BounceMaps:
 
     model = state.scattering.model(baked)
     steep = np.full_like(DEPTHS, max(mu, 0.02))
-    passed = model.transmittance(DEPTHS, steep)
     direct = _bands(model.direct(DEPTHS, steep))
+    scattered = np.maximum(model.transmittance(DEPTHS, steep) - direct, 0)
     even = model.diffuse_reflectance(DEPTHS)
-
-    length = np.sqrt(1 + (land.rise**2).sum(axis=0))
-    facing = np.maximum(mu - land.rise[0] * sun[0] - land.rise[1] * sun[1], 0) / length
-    horizon = _sampled(horizon_towards(baked["land"], azimuth), reach(state), -1.0)
-    t = np.clip((mu - horizon) / (DISC * max(math.cos(elevation), 0.01)) + 0.5, 0, 1)
-    facing = facing * (t * t * (3 - 2 * t))
-    above = read(np.concatenate([np.maximum(passed - direct, 0), even], axis=1), depth, DEPTHS)
-    beam = facing[..., None] * read(direct, along, DEPTHS) + max(mu, 0.0) * above[..., :3]
-    ground = light.sun_irradiance * beam + light.sky_irradiance * (1 - above[..., 3:])
+    above = light.sun_irradiance * max(mu, 0.0) * scattered + light.sky_irradiance * (1 - even)
+    tables = (np.concatenate([above, even], axis=1), light.sun_irradiance * direct)
+    wide, narrow = (np.asarray(table, np.float32) for table in tables)
+    horizon = horizon_towards(baked["land"], azimuth)
+    sharpness = np.float32(1 / (DISC * max(math.cos(elevation), 0.01)))
+    seen = (np.asarray(sun, np.float32), sharpness, land.slopes, horizon, land.nodes)
+    ground, sent, reflectance = light_cells(WITHIN, *seen, land.albedo, depth, wide, along, narrow)
     n, cell = square_cells(reach(state))
-    albedo = cells(land.albedo * ground) / np.maximum(cells(ground), 1e-9)
     below = _beam(baked["air"], base, mu) * SOLAR_CONSTANT * max(-mu, 0.0)
     return BounceMaps(
         cell=cell,
         height=base,
-        elevation=np.minimum(cells(land.height), HIGHEST * base),
-        albedo=albedo,
-        reflectance=cells(above[..., 3:]),
-        ground=cells(ground),
+        elevation=np.minimum(land.height, HIGHEST * base),
+        albedo=sent / np.maximum(ground, 1e-9),
+        reflectance=reflectance,
+        ground=ground,
         cloud=np.broadcast_to(below, (n, n, 3)),
     )
 
@@ -239,5 +239,5 @@ def bake_bounce_ground(arguments: dict[str, Any], inputs: dict[str, Arrays], pro
     """The ground of the square for transfer matrices: `elevation` [m] and `albedo`, (GRID, GRID[, 3])."""
     progress(0.0, "averaging the land over the square")
     land = land_of(inputs["land"], arguments, arguments["height"])
-    elevation = np.minimum(cells(land.height), HIGHEST * arguments["height"])
+    elevation = np.minimum(land.height, HIGHEST * arguments["height"])
     return {"elevation": elevation, "albedo": cells(land.albedo)}

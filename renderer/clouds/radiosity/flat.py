@@ -42,10 +42,14 @@ def bounce(
     from_ground, from_cloud = ground_first, cloud_first
     ground, cloud = np.zeros_like(ground_first), np.zeros_like(cloud_first)
     terms: list[tuple[np.ndarray, np.ndarray]] = []
+    dark = np.zeros_like(ground_first)
+    # Under a sun above the layer only the ground has first light: its paths reach either side every second half-bounce.
+    lit = bool(ground_first.any()), bool(cloud_first.any())
     for _ in range(half_bounces):
-        term = exchange(from_cloud), exchange(from_ground)
+        term = exchange(from_cloud) if lit[1] else dark, exchange(from_ground) if lit[0] else dark
+        lit = lit[1], lit[0]
         ground, cloud = ground + term[0], cloud + term[1]
-        from_ground, from_cloud = albedo * term[0], reflectance * term[1]
+        from_ground, from_cloud = (albedo * term[0] if lit[0] else dark), (reflectance * term[1] if lit[1] else dark)
         terms = [*terms[-3:], term]
     if tail and len(terms) == 4:
         ground, cloud = (

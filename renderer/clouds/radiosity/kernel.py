@@ -41,9 +41,11 @@ class FlatExchange:
             radiosity: (..., N, N), float32 stays float32.
         """
         spectrum = self._spectrum32 if radiosity.dtype == np.float32 else self._spectrum
-        shape = (self.size, self.size)
-        found = fft.irfft2(fft.rfft2(radiosity, shape) * spectrum, shape)
-        return found[..., : self.n, : self.n]
+        # Axis by axis: rows of padding need no transform, neither those that come in nor those that are cut off.
+        waves = fft.fft(fft.rfft(radiosity, self.size), self.size, axis=-2, overwrite_x=True)
+        waves *= spectrum
+        rows = fft.ifft(waves, axis=-2, overwrite_x=True)[..., : self.n, :]
+        return np.asarray(fft.irfft(rows, self.size)[..., : self.n])
 
     def spread(self, radiosity: np.ndarray) -> np.ndarray:
         """The same where the plane goes on beyond the grid with its mean over it, so that a uniform plane stays so."""
