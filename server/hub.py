@@ -6,14 +6,14 @@ import asyncio
 import contextlib
 import functools
 from collections.abc import Callable, Iterator
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import Future, ThreadPoolExecutor
 from typing import Annotated, Any, TypeVar
 
 from fastapi import Depends, FastAPI
 from starlette.requests import HTTPConnection
 
 from renderer.core.errors import LimitError
-from server.facade import RenderSession
+from server.facade import Advance, Preparation, RenderSession
 from server.jobs import Jobs
 from server.metrics import Metrics
 from server.pace import Movers
@@ -49,6 +49,19 @@ class Hub:
         return await asyncio.get_running_loop().run_in_executor(
             self.callers, functools.partial(function, *arguments, **named)
         )
+
+    async def prepare(self, state: Any, on_progress: Callable[[Advance], None] | None = None) -> Preparation:
+        """Start a precomputation off the event loop.
+
+        Whoever is cancelled meanwhile leaves none behind that nobody holds: what was being started is dropped, in the
+        thread that starts it, since the event loop may be over by then.
+        """
+        starting = self.callers.submit(self.session.prepare, state, on_progress)
+        try:
+            return await asyncio.wrap_future(starting)
+        except asyncio.CancelledError:
+            starting.add_done_callback(_drop)
+            raise
 
     async def work(self, function: Callable[..., T], *arguments: Any) -> T:
         """Run something that may take seconds off the event loop.
@@ -97,6 +110,12 @@ class Hub:
         await self.jobs.close()
         for pool in (self.encoders, self.callers, self.renderers, self.workers):
             pool.shutdown(wait=False, cancel_futures=True)
+
+
+def _drop(started: Future[Preparation]) -> None:
+    """Let go of a precomputation that nobody waits for."""
+    if not started.cancelled() and started.exception() is None:
+        started.result().cancel()
 
 
 def hub_of(connection: HTTPConnection) -> Hub:

@@ -118,13 +118,7 @@ class Preparer:
         def on_progress(advance: facade.Advance) -> None:
             loop.call_soon_threadsafe(self._progress, wish, advance)
 
-        starting = asyncio.ensure_future(self._hub.call(self._hub.session.prepare, wish.state, on_progress))
-        try:
-            return await asyncio.shield(starting)
-        except asyncio.CancelledError:
-            # The client left while the work was being started: nobody would hold it.
-            starting.add_done_callback(_drop)
-            raise
+        return await self._hub.prepare(wish.state, on_progress)
 
     async def _first(self, done: asyncio.Future[None]) -> bool:
         """Wait until the preparation is over (True) or a newer wish came (False).
@@ -156,9 +150,3 @@ class Preparer:
     async def _quietly(self, message: BaseModel) -> None:
         with contextlib.suppress(Exception):  # a client that left is noticed by the reader
             await self._tell(message)
-
-
-def _drop(started: asyncio.Future[facade.Preparation]) -> None:
-    """Let go of a preparation that nobody waits for."""
-    if not started.cancelled() and started.exception() is None:
-        started.result().cancel()

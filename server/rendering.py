@@ -37,7 +37,7 @@ async def draw(hub: Hub, request: Request, state: Any, width: int, height: int) 
 
 async def _draw(hub: Hub, left: asyncio.Task[None], state: Any, width: int, height: int) -> facade.Picture:
     if not await hub.call(hub.session.prepared, state):
-        preparation = await hub.call(hub.session.prepare, state)
+        preparation = await hub.prepare(state)
         try:
             await _unless(left, asyncio.wrap_future(preparation.future))
         finally:
@@ -105,7 +105,7 @@ async def warm_up(hub: Hub) -> None:
     try:
         scene = session.scenes()[0]
         state = await hub.call(session.state, str(scene["name"]), first_preset(scene), {"quality.kind": "draft"})
-        preparation = await hub.call(session.prepare, state)
+        preparation = await hub.prepare(state)
         try:
             await asyncio.wrap_future(preparation.future)
         finally:

@@ -130,7 +130,7 @@ class FakeSession:
 
     Attributes:
         gate: drawing waits for it. draw_seconds: time of a 64 x 64 picture [s].
-        bake_gate: preparing a density above 1 waits for it.
+        bake_gate: preparing a density above 1 waits for it. start_gate: so does its very start.
     """
 
     def __init__(self, folder: Path) -> None:
@@ -139,8 +139,10 @@ class FakeSession:
         self.assets = FakeAssets()
         self.pool = ThreadPoolExecutor(1)
         self.gate, self.bake_gate, self.drawing = threading.Event(), threading.Event(), threading.Event()
+        self.start_gate = threading.Event()
         self.gate.set()
         self.bake_gate.set()
+        self.start_gate.set()
         self.draw_seconds = 0.0
         self.drawn: list[Any] = []
         self.preparations: list[FakePreparation] = []
@@ -204,6 +206,7 @@ class FakeSession:
     def prepare(self, state: FakeState, on_progress: Any = None) -> FakePreparation:
         preparation = FakePreparation()
         self.preparations.append(preparation)
+        self.start_gate.wait(10)
         if self.prepared(state):
             preparation.future.set_result(None)
         else:

@@ -36,10 +36,14 @@ def test_a_server_that_cannot_warm_up_serves(
     session.close()
 
 
-def test_a_warm_up_ends_with_the_server(session: FakeSession) -> None:
+@pytest.mark.parametrize("started", [False, True])
+def test_a_warm_up_ends_with_the_server(session: FakeSession, started: bool) -> None:
     session.baked.clear()
     session.bake_gate.clear()
+    if not started:
+        session.start_gate.clear()
     with TestClient(create_app(session, Settings(), warm=True)):
         until(lambda: session.preparations)
-    assert session.preparations[0].cancelled
+    session.start_gate.set()
+    until(lambda: session.preparations[0].cancelled)
     assert session.renders == 0
