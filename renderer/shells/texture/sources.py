@@ -10,12 +10,23 @@ from pydantic import Field, TypeAdapter
 from renderer.core.params import bake_arguments
 from renderer.core.technique import Arrays, Bake
 from renderer.shells.texture.asset import UserVolume
+from renderer.shells.texture.bark import Bark
+from renderer.shells.texture.chain import Chain
+from renderer.shells.texture.clouds import Clouds
 from renderer.shells.texture.fur import Fur
 from renderer.shells.texture.jelly import Jelly
+from renderer.shells.texture.relief import Relief
+from renderer.shells.texture.rocks import Rocks
 from renderer.shells.texture.source import Source
+from renderer.shells.texture.trees import Trees
 from renderer.shells.texture.uniform import Uniform
+from renderer.shells.texture.weave import Weave
+from renderer.shells.texture.wood import Wood
 
-Texture = Annotated[Fur | Jelly | Uniform | UserVolume, Field(discriminator="kind")]
+Texture = Annotated[
+    Fur | Clouds | Jelly | Uniform | Chain | Rocks | Weave | Relief | Trees | Bark | Wood | UserVolume,
+    Field(discriminator="kind"),
+]
 
 _ANY: TypeAdapter[Source] = TypeAdapter(Texture)
 
