@@ -69,6 +69,17 @@ def from_corners(
     return BaseMesh(points[first[used]], number[faces], np.array(corner_uv[whole], np.float64), notes)
 
 
+def side_by_side(parts: list[BaseMesh]) -> BaseMesh:
+    """Several meshes as one; where they touch, they stay apart."""
+    starts = np.cumsum([0, *(len(part.vertices) for part in parts[:-1])])
+    return BaseMesh(
+        np.concatenate([part.vertices for part in parts]),
+        np.concatenate([part.faces + start for part, start in zip(parts, starts)]).astype(np.int32),
+        np.concatenate([part.corner_uv for part in parts]),
+        tuple(note for part in parts for note in part.notes),
+    )
+
+
 def _joined(
     points: np.ndarray, merged: np.ndarray, first: np.ndarray, tolerance: float
 ) -> tuple[np.ndarray, np.ndarray]:

@@ -41,10 +41,32 @@ def plane(size: float, divisions: int, repeat_u: float, repeat_v: float) -> Base
     return from_corners(*grid_corners(nodes, grid_uv(divisions, divisions, repeat_u, repeat_v)))
 
 
+def wrapped_corners(nodes: np.ndarray, repeat_u: float, heights: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Corners of a grid that closes around, as `grid_corners` gives them, its front outside.
+
+    Args:
+        nodes: (R + 1, C + 1, 3), the last column the first again.
+        repeat_u: how often the texture repeats around. heights: (R + 1,) v along.
+    """
+    uv = grid_uv(len(nodes) - 1, nodes.shape[1] - 1, repeat_u, 1.0)
+    uv[..., 1] = heights[:, None]
+    return grid_corners(nodes, uv)
+
+
+def turned_corners(nodes: np.ndarray, repeat_u: float, heights: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The same around the z axis, which it may meet: a cell at a pole is one triangle, whose corner there takes the u
+    of its middle, for no u holds at a pole."""
+    corners, uv = wrapped_corners(nodes, repeat_u, heights)
+    rows, around = nodes.shape[0] - 1, nodes.shape[1] - 1
+    middle = (np.arange(around) + 0.5) / around * repeat_u
+    pole = np.linalg.norm(corners[..., :2], axis=-1) == 0
+    uv[..., 0] = np.where(pole, np.repeat(np.tile(middle, rows), 2)[:, None], uv[..., 0])
+    split = pole.sum(axis=1) < 2  # the other triangle of a pole's cell has no area
+    return corners[split], uv[split]
+
+
 def turned(profile: np.ndarray, around: int, repeat_u: float, heights: np.ndarray) -> BaseMesh:
     """A curve turned around the z axis, its front outside where the curve runs upwards.
-
-    A cell at a pole (radius 0) is one triangle, whose corner there takes the u of its middle: no u holds at a pole.
 
     Args:
         profile: (R + 1, 2) radius and height along the curve, m.
@@ -55,16 +77,7 @@ def turned(profile: np.ndarray, around: int, repeat_u: float, heights: np.ndarra
     angle = 2 * math.pi * (np.arange(around + 1) % around) / around
     radius, height = profile[:, :1], profile[:, 1:]
     nodes = np.stack(np.broadcast_arrays(radius * np.cos(angle), radius * np.sin(angle), height), axis=-1)
-    rows = len(profile) - 1
-    uv = grid_uv(rows, around, repeat_u, 1.0)
-    uv[..., 1] = heights[:, None]
-    corners, corner_uv = grid_corners(nodes, uv)
-    middle = (np.arange(around) + 0.5) / around * repeat_u
-    pole = np.linalg.norm(corners[..., :2], axis=-1) == 0
-    per_cell = np.broadcast_to(np.repeat(np.tile(middle, rows), 2)[:, None], pole.shape)
-    corner_uv[..., 0] = np.where(pole, per_cell, corner_uv[..., 0])
-    split = pole.sum(axis=1) < 2  # the other triangle of a pole's cell has no area
-    return from_corners(corners[split], corner_uv[split])
+    return from_corners(*turned_corners(nodes, repeat_u, heights))
 
 
 def arc_lengths(profile: np.ndarray) -> np.ndarray:

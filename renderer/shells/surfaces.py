@@ -12,6 +12,12 @@ from renderer.core.params import Model, param
 from renderer.core.technique import Arrays
 from renderer.shells import surface_grids
 from renderer.shells.base_mesh import BaseMesh, vertex_normals
+from renderer.shells.surface_mapping import Mapping, load_surface
+from renderer.shells.surface_teapot import teapot
+from renderer.shells.surface_turned import MUSHROOM, VASE, turned_curve
+from renderer.world.mesh import MeshReading
+
+ASSET = r"^asset:[0-9a-f]{64}$"
 
 
 def repeats(around: str, default: float) -> Any:
@@ -75,9 +81,95 @@ class Tube(Model):
         return surface_grids.tube(self.radius, self.length, self.around, self.along, self.repeat_u, self.repeat_v)
 
 
-Surface = Annotated[Plane | Sphere | Tube, Field(discriminator="kind")]
+class Teapot(Model):
+    """Newell's teapot."""
 
-_SURFACES: TypeAdapter[Plane | Sphere | Tube] = TypeAdapter(Surface)
+    kind: Literal["teapot"] = "teapot"
+    size: float = param(
+        1.6, label="Size", help="From the handle to the spout's mouth.", unit="m", cost="bake", ge=0.01, le=1000,
+        source="Newell 1975",
+    )
+    detail: int = param(1, label="Detail", help="Into how many each side of a cell is cut.", cost="bake", ge=1, le=4)
+    repeat_u: int = param(
+        8, label="Repeats around", help="How often the texture stands around the body.", cost="bake", ge=1, le=64
+    )
+    repeat_v: float = repeats("up the body", 3.0)
+
+    def mesh(self) -> BaseMesh:
+        """Its triangles; 2,142 by default (Dufort 2005, table 6.1)."""
+        return teapot(self.size, self.detail, self.repeat_u, self.repeat_v)
+
+
+class Vase(Model):
+    """A vase, open above."""
+
+    kind: Literal["vase"] = "vase"
+    height: float = param(1.6, label="Height", help="Of the vase.", unit="m", cost="bake", ge=0.01, le=1000)
+    around: int = param(64, label="Cells around", help="The axis.", cost="bake", ge=3, le=256)
+    along: int = param(68, label="Cells along", help="From the foot's middle to the lip.", cost="bake", ge=4, le=256)
+    repeat_u: float = repeats("around", 8.0)
+    repeat_v: float = repeats("from the foot's middle to the lip", 7.0)
+
+    def mesh(self) -> BaseMesh:
+        """Its triangles; 8,640 by default (Dufort 2005, table 6.1)."""
+        return turned_curve(VASE, self.height, self.around, self.along, self.repeat_u, self.repeat_v)
+
+
+class Mushroom(Model):
+    """A mushroom: a hollow under its cap, which a thick shell does not fit into."""
+
+    kind: Literal["mushroom"] = "mushroom"
+    height: float = param(1.2, label="Height", help="Of the mushroom.", unit="m", cost="bake", ge=0.01, le=1000)
+    around: int = param(40, label="Cells around", help="The axis.", cost="bake", ge=3, le=256)
+    along: int = param(36, label="Cells along", help="From the foot's middle to the top.", cost="bake", ge=4, le=256)
+    repeat_u: float = repeats("around", 6.0)
+    repeat_v: float = repeats("from the foot's middle to the top", 5.0)
+
+    def mesh(self) -> BaseMesh:
+        """Its triangles."""
+        return turned_curve(MUSHROOM, self.height, self.around, self.along, self.repeat_u, self.repeat_v)
+
+
+class UserMesh(Model):
+    """An uploaded mesh."""
+
+    kind: Literal["asset"] = "asset"
+    asset: str = param(
+        ..., label="File", help="An uploaded mesh, as asset:HASH.", cost="bake", pattern=ASSET, takes=("mesh",)
+    )
+    reading: MeshReading = param(MeshReading(), label="Reading", help="What the file leaves unsaid.", cost="bake")
+    size: float = param(
+        1.5,
+        label="Size",
+        help="Of its longest side, with its middle at the origin; 0 leaves it as it is.",
+        unit="m",
+        cost="bake",
+        ge=0,
+        le=1000,
+    )
+    mapping: Mapping = param(
+        "file",
+        label="Texture coordinates",
+        help="The file's own (those of a box where it has none), or by a box, a cylinder, a sphere, or from above.",
+        cost="bake",
+    )
+    repeat_u: float = repeats("along u", 1.0)
+    repeat_v: float = repeats("along v", 1.0)
+
+    def mesh(self) -> BaseMesh:
+        """Its triangles.
+
+        Raises:
+            InputError: the file cannot be had, or used.
+        """
+        return load_surface(self.model_dump(mode="json"))
+
+
+AnySurface = Plane | Sphere | Tube | Teapot | Vase | Mushroom | UserMesh
+
+Surface = Annotated[AnySurface, Field(discriminator="kind")]
+
+_SURFACES: TypeAdapter[AnySurface] = TypeAdapter(Surface)
 
 
 def bake_surface(

@@ -53,6 +53,8 @@ class Mesh:
         two_sided: whether the back of a face is matter too (leaves, open surfaces).
         watertight: whether every edge joins exactly two faces that agree on what is outside.
         notes: what was left out or assumed while reading, in words.
+        corner_uv: (F, 3, 2) float64 texture coordinates of the faces' corners, v upwards, or None where the file has
+            none.
     """
 
     vertices: np.ndarray
@@ -62,6 +64,7 @@ class Mesh:
     two_sided: bool = False
     watertight: bool = False
     notes: tuple[str, ...] = ()
+    corner_uv: np.ndarray | None = None
 
     @property
     def bounds(self) -> tuple[np.ndarray, np.ndarray]:
@@ -117,8 +120,10 @@ def load_mesh(path: Path, limits: Limits = DEFAULT_LIMITS, reading: MeshReading 
         notes += said
     turn = _frame(reading, parsed.format)
     vertices, faces, normals = _joined(parts, turn)
+    uv, said = _texture_coordinates(parts, turn)
+    notes += said
     doubled = any(getattr(getattr(g.visual, "material", None), "doubleSided", False) for g, _ in parts)
-    return _checked(vertices, faces, np.concatenate(colours), normals, doubled, tuple(dict.fromkeys(notes)))
+    return _checked(vertices, faces, np.concatenate(colours), normals, uv, doubled, tuple(dict.fromkeys(notes)))
 
 
 def _instances(scene: trimesh.Scene, limits: Limits) -> list[tuple[trimesh.Trimesh, np.ndarray]]:
@@ -161,8 +166,7 @@ def _joined(
         corners = np.asarray(geometry.faces, dtype=np.int64)
         if corners.min() < 0 or corners.max() >= len(geometry.vertices):
             raise AssetError("faces", f"name vertex {int(corners.max())} of {len(geometry.vertices):,}")
-        mirrored = np.linalg.det(matrix) < 0
-        faces.append((corners[:, ::-1] if mirrored else corners) + start)
+        faces.append(_front(corners, matrix) + start)
         start += len(geometry.vertices)
         if "vertex_normals" in geometry._cache.cache and abs(np.linalg.det(matrix)) > 0:
             normals.append(np.asarray(geometry.vertex_normals, dtype=np.float64) @ np.linalg.inv(matrix))
@@ -173,11 +177,33 @@ def _joined(
     )
 
 
+def _front(corners: np.ndarray, matrix: np.ndarray) -> np.ndarray:
+    """What holds for the corners of faces (F, 3, ...), in reverse order where a matrix (3, 3) mirrors them."""
+    return corners[:, ::-1] if np.linalg.det(matrix) < 0 else corners
+
+
+def _texture_coordinates(
+    parts: list[tuple[trimesh.Trimesh, np.ndarray]], turn: np.ndarray
+) -> tuple[np.ndarray | None, tuple[str, ...]]:
+    """Texture coordinates (F, 3, 2) of the faces' corners, 0 on parts without; None where no part has any. Notes."""
+    found, missing = [], 0
+    for geometry, transform in parts:
+        uv = getattr(geometry.visual, "uv", None)
+        if uv is None or np.shape(uv) != (len(geometry.vertices), 2) or not np.isfinite(uv).all():
+            uv, missing = np.zeros((len(geometry.vertices), 2)), missing + 1
+        found.append(_front(np.asarray(uv, np.float64)[geometry.faces], turn @ transform[:3, :3]))
+    if missing == len(parts):
+        return None, ()
+    said = (f"{missing:,} of {len(parts):,} parts have no texture coordinates",) if missing else ()
+    return np.concatenate(found), said
+
+
 def _checked(
     vertices: np.ndarray,
     faces: np.ndarray,
     colour: np.ndarray,
     normals: np.ndarray | None,
+    uv: np.ndarray | None,
     doubled: bool,
     notes: tuple[str, ...],
 ) -> Mesh:
@@ -205,4 +231,5 @@ def _checked(
             (normals / length, notes) if usable else (None, (*notes, "vertex normals without direction were left out"))
         )
     watertight = is_watertight(vertices, faces)
-    return Mesh(vertices, faces, colour[solid], normals, doubled or not watertight, watertight, notes)
+    uv = None if uv is None else uv[solid]
+    return Mesh(vertices, faces, colour[solid], normals, doubled or not watertight, watertight, notes, uv)

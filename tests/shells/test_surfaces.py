@@ -3,14 +3,30 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+import trimesh
 
+from renderer.core.cache import AssetStore
+from renderer.core.errors import AssetError, LimitError
 from renderer.core.params import bake_arguments
 from renderer.shells.base_mesh import BaseMesh, face_vectors, flat_uv, from_corners, vertex_normals
-from renderer.shells.surfaces import Plane, Sphere, Tube, bake_surface, surface_of
+from renderer.shells.surface_mapping import mapped
+from renderer.shells.surface_teapot import BODY, HANDLE, LID, SPOUT
+from renderer.shells.surfaces import (
+    Mushroom,
+    Plane,
+    Sphere,
+    Teapot,
+    Tube,
+    UserMesh,
+    Vase,
+    bake_surface,
+    surface_of,
+)
 from renderer.world.mesh import is_watertight
 
 
@@ -33,6 +49,9 @@ def euler(mesh: BaseMesh) -> int:
     (Sphere(), 1200, True, 2),
     (Sphere(layout="globe"), 1520, True, 2),
     (Tube(), 120, False, 0),
+    (Teapot(), 2142, False, 1 + 1 + 0 + 0),
+    (Vase(), 8640, False, 1),
+    (Mushroom(), 2800, True, 2),
 ], ids=lambda value: getattr(value, "kind", None))
 def test_the_built_in_surfaces_are_whole(surface: Any, triangles: int, closed: bool, holes: int) -> None:
     mesh = baked(surface)
@@ -65,7 +84,7 @@ def test_texture_repeats_as_often_as_asked() -> None:
 
 def test_texture_is_no_mirror_image() -> None:
     """u to the right and v upwards, seen from the front: the front is where u turns to v counter-clockwise."""
-    for surface in (Plane(), Sphere(), Sphere(layout="globe"), Tube()):
+    for surface in (Plane(), Sphere(), Sphere(layout="globe"), Tube(), Teapot(), Vase(), Mushroom()):
         a, b = np.moveaxis(np.diff(baked(surface).corner_uv, axis=1), 1, 0)
         assert (a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0] > 0).all(), surface
 
@@ -97,3 +116,87 @@ def test_corners_at_one_place_become_one_vertex() -> None:
     joined = from_corners(corners, uv, tolerance=1e-6)
     np.testing.assert_array_equal(joined.faces, ((0, 1, 2), (1, 3, 2)))
     np.testing.assert_array_equal(joined.corner_uv, uv[:2])
+
+
+@pytest.mark.parametrize("rows", [BODY, LID, HANDLE, SPOUT], ids=["body", "lid", "handle", "spout"])
+def test_the_teapots_patches_join_smoothly(rows: np.ndarray) -> None:
+    """At every joint the control points before and after it lie on one line through it: a slip in the published table
+    would break that."""
+    for joint in range(3, len(rows) - 1, 3):
+        before, after = rows[joint] - rows[joint - 1], rows[joint + 1] - rows[joint]
+        pairs = ((0, 2), (1, 2)) if rows is BODY or rows is LID else ((0, 1), (2, 3), (4, 4))
+        for pair in pairs:
+            assert abs(before[list(pair)] @ (after[list(pair)][::-1] * (1, -1))) < 1e-12
+
+
+def test_the_teapots_quarters_are_round() -> None:
+    """Newell's inner control points stand at 0.56 of the radius, where 0.5523 would fit a circle best."""
+    rows = np.concatenate([BODY, LID])
+    rows = rows[rows[:, 0] > 0]
+    np.testing.assert_allclose(rows[:, 1] / rows[:, 0], 0.56, atol=0.003)
+
+
+def test_the_teapot_is_its_own_mirror_image() -> None:
+    mesh = baked(Teapot())
+    key = np.round(mesh.vertices, 9) + 0.0
+    np.testing.assert_array_equal(np.unique(key, axis=0), np.unique(np.round(key * (1, -1, 1), 9) + 0.0, axis=0))
+    np.testing.assert_allclose(np.ptp(mesh.vertices[:, 0]), 1.6)
+    assert len(baked(Teapot(detail=2)).faces) == 4 * 2142 + 2 * (28 + 26)
+
+
+def test_every_part_of_the_teapot_has_its_front_outside() -> None:
+    """Where a part is widest its normals look away from its middle."""
+    mesh = baked(Teapot())
+    normal, middle = face_vectors(mesh.vertices, mesh.faces), mesh.vertices[mesh.faces].mean(axis=1)
+    for part in (middle[:, 0] < -0.55, middle[:, 0] > 0.6, abs(middle[:, 0]) < 0.3):
+        side = middle[part] - middle[part].mean(axis=0)
+        assert np.einsum("fk,fk->", normal[part], side) > 0
+
+
+class TestUserMesh:
+    """An uploaded mesh: its own texture coordinates, or those of a simple body."""
+
+    def stored(self, mesh: trimesh.Trimesh, kind: str = "obj") -> str:
+        data = trimesh.exchange.export.export_mesh(mesh, None, file_type=kind)
+        return "asset:" + AssetStore().put(data.encode() if isinstance(data, str) else data, "mesh", f"mesh.{kind}")
+
+    def test_it_is_centred_and_scaled(self) -> None:
+        mesh = baked(UserMesh(asset=self.stored(trimesh.creation.box((2, 4, 8))), size=2))
+        np.testing.assert_allclose(mesh.vertices.min(axis=0), (-0.25, -0.5, -1))
+        np.testing.assert_allclose(mesh.vertices.max(axis=0), (0.25, 0.5, 1))
+        assert len(mesh.vertices) == 8
+        assert is_watertight(mesh.vertices, mesh.faces)
+        assert "of a box" in mesh.notes[-1]
+
+    def test_its_own_coordinates_are_kept(self) -> None:
+        body = trimesh.creation.box((1, 1, 1))
+        uv = np.random.default_rng(3).random((8, 2))
+        body.visual = trimesh.visual.TextureVisuals(uv=uv)
+        mesh = baked(UserMesh(asset=self.stored(body), size=0, repeat_u=2, repeat_v=3))
+        for face, own in zip(mesh.faces, mesh.corner_uv):
+            for vertex, at in zip(face, own):
+                index = np.abs(body.vertices - mesh.vertices[vertex]).sum(axis=1).argmin()
+                np.testing.assert_allclose(at, uv[index] * (2, 3), atol=1e-6)
+
+    @pytest.mark.parametrize("mapping", ["box", "cylinder", "sphere", "plane"])
+    def test_a_mapping_covers_every_face(self, mapping: Any) -> None:
+        ball = Sphere(divisions=6).mesh()
+        uv = mapped(ball.vertices[ball.faces], mapping)
+        assert np.isfinite(uv).all()
+        assert np.ptp(uv, axis=1).max() < 0.4, "no face spans the seam"
+        a, b = np.moveaxis(np.diff(uv, axis=1), 1, 0)
+        area = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
+        if mapping in ("box", "sphere"):
+            assert (area > 0).all()
+        assert len(flat_uv(uv)) == 0
+
+    def test_what_cannot_be_used_is_named(self, tmp_path: Path) -> None:
+        with pytest.raises(AssetError, match="expired") as caught:
+            baked(UserMesh(asset="asset:" + "0" * 64))
+        assert caught.value.field == "surface.asset"
+        many = "asset:" + AssetStore().put(
+            trimesh.creation.icosphere(7).export(file_type="ply"), "mesh", "many.ply"
+        )
+        with pytest.raises(LimitError, match="triangles") as refused:
+            baked(UserMesh(asset=many))
+        assert refused.value.field == "surface.asset"

@@ -12,7 +12,7 @@ from PIL import Image
 from renderer.core.errors import AssetError, LimitError
 from renderer.world.image import srgb_decode
 from renderer.world.limits import Limits
-from renderer.world.mesh import DEFAULT_COLOUR, MeshReading, is_watertight, load_mesh
+from renderer.world.mesh import DEFAULT_COLOUR, Mesh, MeshReading, is_watertight, load_mesh
 from tests.world.meshes import box, quad_glb, written
 
 FORMATS = ("glb", "obj", "ply", "stl", "off")
@@ -165,3 +165,43 @@ def test_watertight_needs_agreement_on_the_outside() -> None:
     assert not is_watertight(solid.vertices, flipped)
     soup = solid.vertices[solid.faces].reshape(-1, 3)
     assert is_watertight(soup, np.arange(len(soup)).reshape(-1, 3))
+
+
+def test_texture_coordinates_stay_with_their_corners(tmp_path: Path) -> None:
+    """A vertex on a seam has one place and several texture coordinates: each face keeps its own."""
+    text = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nvt 5 5\nf 1/1 2/2 3/3\nf 1/5 3/3 4/4\n"
+    path = tmp_path / "seam.obj"
+    path.write_text(text)
+    mesh = load_mesh(path)
+    assert mesh.corner_uv is not None
+    at = {tuple(place): tuple(uv) for place, uv in zip(mesh.vertices[mesh.faces[0]], mesh.corner_uv[0])}
+    assert at == {(0, 0, 0): (0, 0), (1, 0, 0): (1, 0), (1, 1, 0): (1, 1)}
+    at = {tuple(place): tuple(uv) for place, uv in zip(mesh.vertices[mesh.faces[1]], mesh.corner_uv[1])}
+    assert at == {(0, 0, 0): (5, 5), (1, 1, 0): (1, 1), (0, 1, 0): (0, 1)}
+
+
+@pytest.mark.parametrize("names", [("s", "t"), ("u", "v"), ("texture_u", "texture_v")])
+def test_a_ply_file_has_texture_coordinates_by_any_of_their_names(names: tuple[str, str], tmp_path: Path) -> None:
+    header = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+    header += f"property float {names[0]}\nproperty float {names[1]}\n"
+    header += "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
+    path = tmp_path / "mesh.ply"
+    path.write_text(header + "0 0 0 0.1 0.2\n1 0 0 0.3 0.4\n0 1 0 0.5 0.6\n3 0 1 2\n")
+    np.testing.assert_allclose(load_mesh(path).corner_uv, [[(0.1, 0.2), (0.3, 0.4), (0.5, 0.6)]], atol=1e-7)
+
+
+def test_gltf_texture_coordinates_run_upwards_and_follow_a_mirror(tmp_path: Path) -> None:
+    """glTF counts v downwards. An instance mirrored by its transform has its corners in reverse, and their uv too."""
+    def check(mesh: Mesh) -> None:
+        assert mesh.corner_uv is not None
+        x = np.abs(mesh.vertices[mesh.faces])
+        np.testing.assert_allclose(mesh.corner_uv, x[..., [0, 2]], atol=1e-6)
+
+    check(load_mesh(quad_glb(tmp_path)))
+    mirrored = load_mesh(quad_glb(tmp_path, edit=lambda document: document["nodes"][0].update(scale=[-1, 1, 1])))
+    assert mirrored.bounds[0][0] == -1
+    check(mirrored)
+
+
+def test_a_file_without_texture_coordinates_says_nothing_of_them(tmp_path: Path) -> None:
+    assert load_mesh(written(box(), "stl", tmp_path)).corner_uv is None
