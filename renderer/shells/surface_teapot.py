@@ -81,8 +81,10 @@ def along(cells: tuple[int, ...], finer: int) -> np.ndarray:
 
 
 def nodes(control: np.ndarray, rows: np.ndarray, around: int) -> np.ndarray:
-    """Nodes (N, around + 1, 3) of a closed grid of patches; the last column is the first again, and a pole one place, to
-    the last bit."""
+    """Nodes (N, around + 1, 3) of a closed grid of patches.
+
+    The last column is the first again, and a pole is one place, to the last bit.
+    """
     down, across = len(control) // 3, control.shape[1] // 3
     columns = bezier(across, np.arange(around + 1) / around * across)
     surface: np.ndarray = np.einsum("nr,mc,rck->nmk", bezier(down, rows), columns, control)
