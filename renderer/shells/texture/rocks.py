@@ -6,7 +6,7 @@ next cell, the difference of the distances to the nearest two points.
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import ClassVar, Literal
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -21,6 +21,7 @@ from renderer.shells.texture.source import Procedure, generator, wrapped
 class Rocks(Procedure):
     """Stones."""
 
+    seconds: ClassVar[float] = 2.0
     kind: Literal["rocks"] = "rocks"
     across: int = param(
         512, label="Voxels across", help="Along each side of the repeated square.", unit="voxel", cost="bake",

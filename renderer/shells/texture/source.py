@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -15,6 +15,9 @@ Rgb = tuple[float, float, float]
 
 class Source(Model):
     """Where a 3D texture comes from."""
+
+    seconds: ClassVar[float] = 1.0
+    """What its block takes to make, to announce it."""
 
     @abstractmethod
     def matter(self) -> Matter:

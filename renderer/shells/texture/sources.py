@@ -15,6 +15,7 @@ from renderer.shells.texture.chain import Chain
 from renderer.shells.texture.clouds import Clouds
 from renderer.shells.texture.fur import Fur
 from renderer.shells.texture.jelly import Jelly
+from renderer.shells.texture.meshed import Meshed
 from renderer.shells.texture.relief import Relief
 from renderer.shells.texture.rocks import Rocks
 from renderer.shells.texture.source import Source
@@ -24,7 +25,8 @@ from renderer.shells.texture.weave import Weave
 from renderer.shells.texture.wood import Wood
 
 Texture = Annotated[
-    Fur | Clouds | Jelly | Uniform | Chain | Rocks | Weave | Relief | Trees | Bark | Wood | UserVolume,
+    Fur | Clouds | Jelly | Uniform | Chain | Rocks | Weave | Relief | Trees | Bark | Wood | Meshed
+    | UserVolume,
     Field(discriminator="kind"),
 ]
 
@@ -33,7 +35,7 @@ _ANY: TypeAdapter[Source] = TypeAdapter(Texture)
 
 def texture_bake(texture: Source) -> Bake:
     """The precomputation of a source's block."""
-    return Bake("texture", bake_texture, bake_arguments(texture), seconds=1)
+    return Bake("texture", bake_texture, bake_arguments(texture), seconds=texture.seconds)
 
 
 def bake_texture(

@@ -18,7 +18,9 @@ from renderer.shells.texture.source import Procedure, Source
 from renderer.shells.texture.sources import Texture, bake_texture, moment_of, texture_bake
 
 SMALL = {"across": 32, "layers": 8}
-COARSE: dict[str, dict[str, object]] = {"fur": {"strands": 10}, "rocks": {"stones": 4}, "wood": {"rings": 2.0}}
+COARSE: dict[str, dict[str, object]] = {
+    "fur": {"strands": 10}, "rocks": {"stones": 4}, "wood": {"rings": 2.0}, "mesh": {"copies": 2},
+}
 """What makes details larger than a voxel of a small block."""
 PROCEDURES = sorted(kind for kind, model in union_members(Texture).items() if issubclass(model, Procedure))
 
@@ -57,7 +59,7 @@ def steps(block: np.ndarray, axis: int) -> np.ndarray:
 @pytest.mark.parametrize("kind", sorted(set(PROCEDURES) - {"uniform"}))
 def test_a_procedure_repeats_without_a_seam(kind: str) -> None:
     """The step across the seam is one like the others; where a block is cut elsewhere it is larger."""
-    made = baked(kind=kind, across=64, layers=16, **COARSE.get(kind, {}))
+    made = baked(**{"kind": kind, "across": 64, "layers": 16, **COARSE.get(kind, {})})
     block = np.concatenate([made["colour"], made["normal"]], axis=-1)
     for axis in (1, 2):
         found = steps(block, axis)
