@@ -101,14 +101,12 @@ def build_shell(base: BaseMesh, offset: np.ndarray) -> Shell:
     """
     count = len(base.vertices)
     order = np.argsort(base.faces, axis=1)
-    lower = np.take_along_axis(base.faces, order, axis=1)
+    lower, turn = sorted_faces(base.faces)
     corners = np.concatenate([lower, lower + count], axis=1)
     tets = corners[:, CORNERS].reshape(-1, 4).astype(np.int32)
     uv = np.take_along_axis(base.corner_uv, order[..., None], axis=1)
     uvw = np.concatenate([np.dstack([uv, np.zeros(uv.shape[:2])]), np.dstack([uv, np.ones(uv.shape[:2])])], axis=1)
     texture = uvw[:, CORNERS].reshape(-1, 4, 3)
-    # The permutations (0,1,2), (1,2,0) and (2,0,1) keep the triangle's turn, the other three reverse it.
-    turn = np.where((order[:, 1] - order[:, 0]) % 3 == 1, 1.0, -1.0)
     neighbour, edges = _neighbours(lower, turn, count)
     positions = np.concatenate([base.vertices, base.vertices + offset])
     planes, to_texture, volumes = cell_geometry(positions, tets, texture)
@@ -117,6 +115,14 @@ def build_shell(base: BaseMesh, offset: np.ndarray) -> Shell:
         positions, tets, texture, planes, to_texture, neighbour, signs, volumes * signs,
         flat_uv(base.corner_uv).astype(np.int32), edges,
     )
+
+
+def sorted_faces(faces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Triangles (F, 3) with their vertices in rising order, and 1 where that keeps their turn, else -1, (F,)."""
+    order = np.argsort(faces, axis=1)
+    # The permutations (0,1,2), (1,2,0) and (2,0,1) keep the turn, the other three reverse it.
+    turn = np.where((order[:, 1] - order[:, 0]) % 3 == 1, 1.0, -1.0)
+    return np.take_along_axis(faces, order, axis=1), turn
 
 
 def update_shell(shell: Shell, positions: np.ndarray) -> tuple[Shell, np.ndarray]:

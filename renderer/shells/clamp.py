@@ -1,0 +1,192 @@
+"""Conflicts of a shell, prisms inside out or over one another, and the local shortening that removes them.
+
+After Peng, Kristjansson and Zorin 2004 ("Interactive modeling of topologically complex geometric detail") in spirit:
+where the shell would meet itself it becomes thinner, by as much as is needed and with a gentle slope around. They get
+the length from an averaged distance to the surface; here it is shortened until exact tests find no conflict.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from renderer.shells.base_mesh import face_vectors
+from renderer.shells.clamp_kernels import overlapping_prisms
+from renderer.shells.shell import CORNERS, FLAT, SIGNS, sorted_faces
+
+STEP = 0.85
+"""Factor by which the offsets of a conflict are shortened at a time: what remains is at most that much too short."""
+
+LEAST = 0.02
+"""Share of its length below which no offset is shortened: what overlaps there lies where the mesh meets itself."""
+
+SLOPE = 0.6
+"""Metres by which the shell's thickness may change in a metre along the surface, around what was shortened."""
+
+TOUCH = 1e-9
+"""Share of the mesh's extent within which prisms only touch."""
+
+FACING = 0.05
+"""Cosine to the normals of its faces that an offset has at least, where that is possible."""
+
+TURNS = 60
+"""Steps in which such a direction is looked for."""
+
+
+@dataclass(frozen=True)
+class Conflicts:
+    """Prisms that are not what they should be.
+
+    Args:
+        inverted: (N,) triangles whose prism has a cell inside out, or without an inside.
+        overlaps: (M, 2) pairs of prisms that overlap.
+    """
+
+    inverted: np.ndarray
+    overlaps: np.ndarray
+
+    def prisms(self) -> np.ndarray:
+        """Every prism of a conflict, once."""
+        return np.unique(np.concatenate([self.inverted, self.overlaps.ravel()]))
+
+    def __len__(self) -> int:
+        return len(self.inverted) + len(self.overlaps)
+
+
+@dataclass(frozen=True)
+class Clamped:
+    """Offsets after shortening.
+
+    Args:
+        share: (V,) of its wanted length that each vertex keeps.
+        wanted, left: conflicts before and after.
+        own: (M, 2) pairs of `wanted` that overlap however thin the shell is: the mesh meets itself there.
+    """
+
+    share: np.ndarray
+    wanted: Conflicts
+    left: Conflicts
+    own: np.ndarray
+
+
+class Prisms:
+    """The prisms over a mesh, to look for conflicts at several offsets.
+
+    Args:
+        vertices: (V, 3) metres. faces: (F, 3).
+    """
+
+    def __init__(self, vertices: np.ndarray, faces: np.ndarray) -> None:
+        lower, self._turn = sorted_faces(faces)
+        self.vertices, self.faces = vertices, faces
+        self.corners = np.concatenate([lower, lower + len(vertices)], axis=1).astype(np.int64)
+        a, b = faces.ravel(), np.roll(faces, -1, axis=1).ravel()
+        self._edges = (a, b, SLOPE * np.linalg.norm(vertices[a] - vertices[b], axis=1))
+        self._slack = TOUCH * float(np.ptp(vertices, axis=0).max())
+
+    def conflicts(self, offset: np.ndarray, active: np.ndarray | None = None) -> Conflicts:
+        """Conflicts at offsets (V, 3) [m]; where `active` (F,) is given, pairs without any such prism are left out."""
+        positions = np.concatenate([self.vertices, self.vertices + offset])
+        cells = positions[self.corners[:, CORNERS]]
+        a, b, c = (cells[..., k, :] - cells[..., 0, :] for k in (1, 2, 3))
+        determinant = np.einsum("fck,fck->fc", a, np.cross(b, c)) * SIGNS * self._turn[:, None]
+        longest = np.maximum.reduce([np.einsum("fck,fck->fc", edge, edge) for edge in (a, b, c)]) ** 1.5
+        inverted = np.flatnonzero((determinant <= 6 * FLAT * longest).any(axis=1))
+        every = np.ones(len(self.faces), bool) if active is None else active
+        return Conflicts(inverted, overlapping_prisms(positions, self.corners, every, self._slack))
+
+    def clamp(self, offset: np.ndarray) -> Clamped:
+        """Shorten offsets (V, 3) [m] until no conflict is left but those that no length removes."""
+        share = np.ones(len(self.vertices))
+        wanted = left = self.conflicts(offset)
+        if not len(wanted):
+            return Clamped(share, wanted, left, np.empty((0, 2), np.int64))
+        least = self.conflicts(offset * LEAST)
+        own = _common(wanted.overlaps, self.conflicts(offset * TOUCH**0.5).overlaps)
+        length = np.linalg.norm(offset, axis=1)
+        while True:
+            bad = np.concatenate([
+                np.setdiff1d(left.inverted, least.inverted), _without(left.overlaps, least.overlaps).ravel()
+            ])
+            concerned = np.unique(self.faces[bad])
+            concerned = concerned[share[concerned] > LEAST]
+            if not len(concerned):
+                return Clamped(share, wanted, left, own)
+            before = share
+            share = share.copy()
+            share[concerned] = np.maximum(share[concerned] * STEP, LEAST)
+            share = self._gentle(share, length)
+            active = (share != before)[self.faces].any(axis=1)
+            now = self.conflicts(offset * share[:, None], active)
+            kept = left.overlaps[~active[left.overlaps].any(axis=1)]
+            left = Conflicts(now.inverted, np.concatenate([now.overlaps, kept]))
+
+    def _gentle(self, share: np.ndarray, length: np.ndarray) -> np.ndarray:
+        """Shares lowered around what was shortened, so that there the thickness changes by `SLOPE` at most."""
+        a, b, rise = self._edges
+        cap = np.where(share < 1, share * length, np.inf)
+        while True:
+            lower = cap.copy()
+            np.minimum.at(lower, a, cap[b] + rise)
+            np.minimum.at(lower, b, cap[a] + rise)
+            # A cap above the offset's own length changes nothing, and goes no further.
+            lower[lower >= length] = np.inf
+            if not (lower < cap - 1e-9 * length).any():
+                kept = np.minimum(length, cap) / np.where(length > 0, length, 1)
+                return np.clip(kept, LEAST, 1)
+            cap = np.minimum(lower, cap)
+
+
+def facing_directions(direction: np.ndarray, vertices: np.ndarray, faces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Directions turned until they look to the front of every face around their vertex, where one direction can.
+
+    A prism that starts towards the back of its triangle is inside out however thin it is. Each step turns a direction
+    towards the normal of the face that it faces least, as a perceptron learns.
+
+    Args:
+        direction: (V, 3) unit vectors. vertices: (V, 3). faces: (F, 3).
+
+    Returns:
+        (V, 3) unit vectors, and which of them were turned, (V,) bool.
+    """
+    vectors = face_vectors(vertices, faces)
+    normal = vectors / np.maximum(np.linalg.norm(vectors, axis=1, keepdims=True), 1e-300)
+    corner, around = faces.ravel(), np.repeat(np.arange(len(faces)), 3)
+    found = direction.copy()
+
+    def worst(current: np.ndarray) -> np.ndarray:
+        cosine = np.ones(len(vertices))
+        np.minimum.at(cosine, corner, np.einsum("nk,nk->n", current[corner], normal[around]))
+        return cosine
+
+    start = best = worst(found)
+    trial = found.copy()
+    for _ in range(TURNS):
+        low = best < FACING
+        if not low.any():
+            break
+        cosine = np.einsum("nk,nk->n", trial[corner], normal[around])
+        least = np.lexsort((cosine, corner))
+        at, first = np.unique(corner[least], return_index=True)
+        pull = normal[around[least[first]]]
+        trial[at] = np.where(low[at, None], trial[at] + 0.5 * pull, trial[at])
+        trial /= np.maximum(np.linalg.norm(trial, axis=1, keepdims=True), 1e-300)
+        now = worst(trial)
+        better = now > best
+        found[better], best = trial[better], np.maximum(now, best)
+    return found, best > start
+
+
+def _key(pairs: np.ndarray) -> np.ndarray:
+    return pairs[:, 0] * np.int64(1 << 32) + pairs[:, 1]
+
+
+def _without(pairs: np.ndarray, others: np.ndarray) -> np.ndarray:
+    kept: np.ndarray = pairs[~np.isin(_key(pairs), _key(others))]
+    return kept
+
+
+def _common(pairs: np.ndarray, others: np.ndarray) -> np.ndarray:
+    kept: np.ndarray = pairs[np.isin(_key(pairs), _key(others))]
+    return kept
