@@ -141,8 +141,9 @@ class Prisms:
 def facing_directions(direction: np.ndarray, vertices: np.ndarray, faces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Directions turned until they look to the front of every face around their vertex, where one direction can.
 
-    A prism that starts towards the back of its triangle is inside out however thin it is. Each step turns a direction
-    towards the normal of the face that it faces least, as a perceptron learns.
+    A prism that starts towards the back of its triangle is inside out however thin it is. The direction whose least
+    cosine to some unit vectors is largest is that of the point of their convex hull nearest to 0 (Gilbert 1966): each
+    step goes towards the normal that is faced least, as far as brings it nearest.
 
     Args:
         direction: (V, 3) unit vectors. vertices: (V, 3). faces: (F, 3).
@@ -153,28 +154,28 @@ def facing_directions(direction: np.ndarray, vertices: np.ndarray, faces: np.nda
     vectors = face_vectors(vertices, faces)
     normal = vectors / np.maximum(np.linalg.norm(vectors, axis=1, keepdims=True), 1e-300)
     corner, around = faces.ravel(), np.repeat(np.arange(len(faces)), 3)
+    point = direction.copy()
     found = direction.copy()
 
-    def worst(current: np.ndarray) -> np.ndarray:
-        cosine = np.ones(len(vertices))
-        np.minimum.at(cosine, corner, np.einsum("nk,nk->n", current[corner], normal[around]))
-        return cosine
+    def faced(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Least cosine at each vertex, and the face to which it is."""
+        unit = points / np.maximum(np.linalg.norm(points, axis=1, keepdims=True), 1e-300)
+        cosine = np.einsum("nk,nk->n", unit[corner], normal[around])
+        order = np.lexsort((cosine, corner))
+        _, first = np.unique(corner[order], return_index=True)
+        return cosine[order[first]], around[order[first]]
 
-    start = best = worst(found)
-    trial = found.copy()
-    for _ in range(TURNS):
-        low = best < FACING
-        if not low.any():
-            break
-        cosine = np.einsum("nk,nk->n", trial[corner], normal[around])
-        least = np.lexsort((cosine, corner))
-        at, first = np.unique(corner[least], return_index=True)
-        pull = normal[around[least[first]]]
-        trial[at] = np.where(low[at, None], trial[at] + 0.5 * pull, trial[at])
-        trial /= np.maximum(np.linalg.norm(trial, axis=1, keepdims=True), 1e-300)
-        now = worst(trial)
-        better = now > best
-        found[better], best = trial[better], np.maximum(now, best)
+    best, face = faced(found)
+    low = best < FACING
+    start = best
+    for _ in range(TURNS if low.any() else 0):
+        way = normal[face] - point
+        reach = np.einsum("vk,vk->v", way, -point) / np.maximum(np.einsum("vk,vk->v", way, way), 1e-300)
+        point = point + np.where(low, np.clip(reach, 0, 1), 0)[:, None] * way
+        now, face = faced(point)
+        better = low & (now > best)
+        found[better] = point[better] / np.linalg.norm(point[better], axis=1, keepdims=True)
+        best = np.where(better, now, best)
     return found, best > start
 
 

@@ -161,7 +161,8 @@ def test_where_the_mesh_meets_itself_no_length_helps() -> None:
 
 def test_a_direction_faces_every_triangle_where_one_can() -> None:
     """A blade's tip with a wide front and a narrow back: the mean normal looks behind the back."""
-    mesh = of_faces([(0, 0, 0), (0, -1, 0), (0.1, 0, -1), (0, 1, 0), (-0.02, 1, -0.2)], [(0, 1, 2), (0, 2, 3), (0, 3, 4)])
+    tip, ring = (0, 0, 0), [(0, -1, 0), (0.1, 0, -1), (0, 1, 0), (-0.02, 1, -0.2)]
+    mesh = of_faces([tip, *ring], [(0, 1, 2), (0, 2, 3), (0, 3, 4)])
     normal = vertex_normals(mesh.vertices, mesh.faces)
     found, turned = facing_directions(normal, mesh.vertices, mesh.faces)
     p, q, r = (mesh.vertices[mesh.faces[:, k]] for k in range(3))
