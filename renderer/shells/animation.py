@@ -1,0 +1,158 @@
+"""Surfaces that move: deformations of the base mesh by time, and the shell that follows them."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from pydantic import Field
+
+from renderer.core.params import Model, param
+from renderer.shells.base_mesh import BaseMesh, vertex_normals
+from renderer.shells.extrusion import Extruded, Extrusion, directions
+from renderer.shells.shell import Shell, update_shell
+
+WAVES = 8
+"""Plane waves of each component of the noise."""
+
+
+def period(seconds: float) -> Any:
+    """The parameter of how long a motion takes to come back."""
+    return param(
+        seconds, label="Period", help="After which it comes back.", unit="s", cost="host", gt=0, le=3600, step=0.1
+    )
+
+
+class Still(Model):
+    """No motion."""
+
+    kind: Literal["still"] = "still"
+
+
+class NoiseMotion(Model):
+    """Noise on the vertices."""
+
+    kind: Literal["noise"] = "noise"
+    amplitude: float = param(
+        0.06, label="Amplitude", help="By how much a place moves along x, y and z: root mean square.", unit="m",
+        cost="host", ge=0, le=100, source="Dufort 2005, figures 5.12 and 6.5",
+    )
+    size: float = param(0.8, label="Size", help="Length of its waves.", unit="m", cost="host", gt=0, le=1000)
+    period: float = period(6.0)
+    seed: int = param(5, label="Seed", help="Of the waves.", cost="host", ge=0, le=2**31 - 1)
+
+
+class Bend(Model):
+    """Bends to and fro about the y axis, its foot fixed."""
+
+    kind: Literal["bend"] = "bend"
+    angle: float = param(
+        60.0, label="Angle", help="Between foot and top when it is bent most.", unit="deg", cost="host", ge=0, le=180,
+        source="Barr 1984",
+    )
+    period: float = period(6.0)
+
+
+class Twist(Model):
+    """Twists to and fro about the z axis."""
+
+    kind: Literal["twist"] = "twist"
+    angle: float = param(
+        90.0, label="Angle", help="Between foot and top when it is twisted most.", unit="deg", cost="host", ge=0,
+        le=720, source="Barr 1984",
+    )
+    period: float = period(6.0)
+
+
+class Bump(Model):
+    """A bump that wanders around the z axis: all but its surroundings stays as it is."""
+
+    kind: Literal["bump"] = "bump"
+    height: float = param(0.12, label="Height", help="Of its top.", unit="m", cost="host", ge=-100, le=100)
+    radius: float = param(0.35, label="Radius", help="How far it reaches.", unit="m", cost="host", gt=0, le=1000)
+    period: float = period(8.0)
+
+
+Motion = Annotated[Still | NoiseMotion | Bend | Twist | Bump, Field(discriminator="kind")]
+
+AnyMotion = Still | NoiseMotion | Bend | Twist | Bump
+
+
+def deformed(base: BaseMesh, motion: AnyMotion, time: float) -> np.ndarray:
+    """The vertices (V, 3) [m] of a mesh at a time [s]; at 0 and after each period bend and twist leave it as it is."""
+    phase = 0.0 if isinstance(motion, Still) else 2 * math.pi * time / motion.period
+    if isinstance(motion, NoiseMotion):
+        return base.vertices + motion.amplitude * _waves(base.vertices, motion, phase)
+    if isinstance(motion, Bend):
+        return bent(base.vertices, math.radians(motion.angle) * math.sin(phase))
+    if isinstance(motion, Twist):
+        return twisted(base.vertices, math.radians(motion.angle) * math.sin(phase))
+    if isinstance(motion, Bump):
+        return _bumped(base, motion, phase)
+    return base.vertices
+
+
+def bent(vertices: np.ndarray, angle: float) -> np.ndarray:
+    """Places bent about the y axis by an angle [rad] from the lowest to the highest: the z axis becomes an arc of its
+    own length (Barr 1984, "Global and local deformations of solid primitives", section 5.5)."""
+    low, high = vertices[:, 2].min(), vertices[:, 2].max()
+    if abs(angle) < 1e-9 or high == low:
+        return vertices.copy()
+    radius = (high - low) / angle
+    turn = (vertices[:, 2] - low) / radius
+    away = radius - vertices[:, 0]
+    return np.stack([radius - away * np.cos(turn), vertices[:, 1], low + away * np.sin(turn)], axis=-1)
+
+
+def twisted(vertices: np.ndarray, angle: float) -> np.ndarray:
+    """Places turned about the z axis, by an angle [rad] between the lowest and the highest (Barr 1984)."""
+    low, high = vertices[:, 2].min(), vertices[:, 2].max()
+    share = (vertices[:, 2] - (low + high) / 2) / max(high - low, 1e-300)
+    c, s = np.cos(angle * share), np.sin(angle * share)
+    x, y, z = vertices.T
+    return np.stack([c * x - s * y, s * x + c * y, z], axis=-1)
+
+
+def positions_at(
+    base: BaseMesh, extruded: Extruded, extrusion: Extrusion, motion: AnyMotion, time: float
+) -> np.ndarray:
+    """Where the shell's vertices are at a time [s], (2V, 3) [m].
+
+    Offsets keep the lengths of the mesh at rest, clamped as they are there, along directions of the mesh as it is now.
+    """
+    vertices = deformed(base, motion, time)
+    way, _ = directions(vertices, base.faces, extrusion)
+    length = extruded.length * extruded.clamped.share
+    return np.concatenate([vertices, vertices + way * length[:, None]])
+
+
+def shell_at(
+    shell: Shell, base: BaseMesh, extruded: Extruded, extrusion: Extrusion, motion: AnyMotion, time: float
+) -> tuple[Shell, np.ndarray]:
+    """The shell at a time [s], from the shell at any other, and the numbers of the tetrahedra computed anew, (N,).
+
+    Dufort 2005, section 5.3.3: only tetrahedra that a deformation changed are computed again.
+    """
+    return update_shell(shell, positions_at(base, extruded, extrusion, motion, time))
+
+
+def _waves(places: np.ndarray, motion: NoiseMotion, phase: float) -> np.ndarray:
+    """Displacement (N, 3) of root mean square 1 in each component, periodic in the phase [rad]."""
+    rng = np.random.default_rng(motion.seed)
+    way = rng.normal(size=(3, WAVES, 3))
+    way *= 2 * math.pi / motion.size / np.linalg.norm(way, axis=-1, keepdims=True)
+    start = rng.uniform(0, 2 * math.pi, (3, WAVES))
+    pace = rng.choice([-2.0, -1.0, 1.0, 2.0], (3, WAVES))
+    angle = np.einsum("nk,cwk->ncw", places, way) + start + pace * phase
+    total: np.ndarray = np.sin(angle).sum(axis=-1) / math.sqrt(WAVES / 2)
+    return total
+
+
+def _bumped(base: BaseMesh, motion: Bump, phase: float) -> np.ndarray:
+    low, high = base.vertices.min(axis=0), base.vertices.max(axis=0)
+    reach = 0.4 * (high - low)
+    middle = (low + high) / 2 + (reach[0] * math.cos(phase), reach[1] * math.sin(phase), 0.0)
+    away = np.linalg.norm(base.vertices - middle, axis=1) / motion.radius
+    height = np.where(away < 1, motion.height * (1 - away**2) ** 2, 0.0)
+    return base.vertices + vertex_normals(base.vertices, base.faces) * height[:, None]
