@@ -41,7 +41,7 @@ class Options:
         threads: that trace; 0 takes every core.
     """
 
-    sun_rays: int = 32
+    sun_rays: int = 128
     seed: int = 1
     threads: int = 0
 
