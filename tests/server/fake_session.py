@@ -264,14 +264,8 @@ class FakeSession:
         kept = self.folder / "kept"
         kept.write_bytes(data)
         self.assets.kept["abc"] = SimpleNamespace(path=kept, kind="terrain", name=filename, expires=1.0)
-        return {
-            "asset": "asset:abc",
-            "kind": "terrain",
-            "name": filename,
-            "reading": dict(reading or {}),
-            "preview": {},
-            "expires": 1.0,
-        }
+        return {"asset": "asset:abc", "kind": "terrain", "name": filename, "reading": dict(reading or {}),
+                "preview": {}, "expires": 1.0}  # fmt: skip
 
     def quantities(self) -> list[dict[str, Any]]:
         return [
