@@ -9,7 +9,7 @@ import numpy as np
 
 from renderer.shells.base_mesh import BaseMesh, from_corners
 from renderer.shells.surface_grids import grid_corners, grid_uv, turned
-from renderer.shells.surfaces import Plane, Sphere, Tube
+from renderer.shells.surfaces import Mushroom, Plane, Sphere, Teapot, Tube, Vase
 
 
 def of_faces(vertices: object, faces: object, uv: np.ndarray | None = None) -> BaseMesh:
@@ -102,10 +102,13 @@ SOUND: dict[str, BaseMesh] = {
     "corner": corner(),
     "hourglass": hourglass(),
     "smeared": smeared(),
+    "vase": Vase(around=32, along=34).mesh(),
+    "mushroom": Mushroom(around=24, along=24).mesh(),
 }
 """Meshes whose shell is sound at a small thickness."""
 
 BROKEN: dict[str, BaseMesh] = {
+    "teapot": Teapot().mesh(),
     "fins": fins(),
     "moebius": moebius(),
     "spikes": lumps(2, 0.4, 6),

@@ -37,10 +37,10 @@ def test_overlaps_are_those_of_a_linear_programme() -> None:
     """Prisms at random places: they overlap where one of their cells shares a ball with one of the other's."""
     rng = np.random.default_rng(11)
     met = 0
-    for _ in range(40):
+    for _ in range(18):
         foot = rng.normal(size=(2, 3, 3))
         rise = np.cross(foot[:, 1] - foot[:, 0], foot[:, 2] - foot[:, 0])[:, None] + 0.2 * rng.normal(size=(2, 3, 3))
-        foot[1] += 1.2 * rng.normal(size=3)
+        foot[1] += 0.8 * rng.normal(size=3)
         prisms = np.concatenate([foot, foot + rise], axis=1)
         cells = prisms[:, [[0, 1, 2, 5], [0, 1, 4, 5], [0, 3, 4, 5]]]
         expected = max(common_depth(a, b) for a in cells[0] for b in cells[1])
@@ -50,7 +50,7 @@ def test_overlaps_are_those_of_a_linear_programme() -> None:
         found = overlapping_prisms(prisms.reshape(-1, 3), corners, np.ones(2, bool), 1e-9)
         assert len(found) == (expected > 0), expected
         met += expected > 0
-    assert 8 < met < 32
+    assert 5 < met < 13, met
 
 
 @pytest.mark.parametrize("name", SOUND)
@@ -112,10 +112,20 @@ def test_clamping_leaves_no_conflict(name: str) -> None:
     assert most_cells_at_a_point(shell.positions, shell.tets, shell.planes) == 1
 
 
+@pytest.mark.parametrize("name", sorted(ALL.keys() - {"moebius", "teapot"}))
+def test_no_mesh_keeps_a_cell_inside_out(name: str) -> None:
+    mesh = ALL[name]
+    clamped = Prisms(mesh.vertices, mesh.faces).clamp(offset := offsets(mesh, 0.15))
+    shell = build_shell(mesh, offset * clamped.share[:, None])
+    assert len(shell.inverted()) == len(shell.flat()) == 0
+    if name in SOUND:
+        assert len(clamped.left) == 0
+
+
 def most_cells_at_a_point(positions: np.ndarray, tets: np.ndarray, planes: np.ndarray) -> int:
-    """The largest number of cells that hold one of a few thousand random points, each drawn inside some cell."""
+    """The largest number of cells that hold one of 500 random points, each drawn inside some cell."""
     rng = np.random.default_rng(4)
-    cells = rng.integers(0, len(tets), 1500)
+    cells = rng.integers(0, len(tets), 500)
     weights = rng.dirichlet(np.ones(4), len(cells))
     points = np.einsum("nk,nkx->nx", weights, positions[tets[cells]])
     inside = np.ones((len(points), len(tets)), bool)

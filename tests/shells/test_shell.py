@@ -62,16 +62,17 @@ def test_shared_faces_match(name: str) -> None:
     shell = SHELLS[name]
     cell, corner = np.nonzero(shell.neighbour >= 0)
     other = shell.neighbour[cell, corner]
-    back = np.array([np.flatnonzero(shell.neighbour[there] == here) for here, there in zip(cell, other)])
-    assert back.shape[1] == 1
-    here = [np.delete(shell.tets[c], k) for c, k in zip(cell, corner)]
-    np.testing.assert_array_equal(here, [np.delete(shell.tets[c], k) for c, k in zip(other, back[:, 0])])
+    names_back = shell.neighbour[other] == cell[:, None]
+    assert (names_back.sum(axis=1) == 1).all()
+    back = names_back.argmax(axis=1)
+    rest = np.array([[1, 2, 3], [0, 2, 3], [0, 1, 3], [0, 1, 2]])
+    here = np.take_along_axis(shell.tets[cell], rest[corner], axis=1)
+    np.testing.assert_array_equal(here, np.take_along_axis(shell.tets[other], rest[back], axis=1))
     if name in SOUND:
-        np.testing.assert_array_equal(shell.planes[cell, corner], -shell.planes[other, back[:, 0]])
-    for code, edge in ((BASE, 0), (TOP, len(ALL[name].vertices))):
-        at = np.nonzero(shell.neighbour == code)
-        assert len(at[0]) == len(ALL[name].faces)
-        outer = np.array([np.delete(shell.tets[c], k) for c, k in zip(*at)]) - edge
+        np.testing.assert_array_equal(shell.planes[cell, corner], -shell.planes[other, back])
+    for code, lift in ((BASE, 0), (TOP, len(ALL[name].vertices))):
+        cell, corner = np.nonzero(shell.neighbour == code)
+        outer = np.take_along_axis(shell.tets[cell], rest[corner], axis=1) - lift
         np.testing.assert_array_equal(outer, np.sort(ALL[name].faces, axis=1))
     edges = np.sort(np.stack([ALL[name].faces, np.roll(ALL[name].faces, -1, axis=1)], axis=-1).reshape(-1, 2), axis=1)
     _, uses = np.unique(edges, axis=0, return_counts=True)

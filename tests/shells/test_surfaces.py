@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -13,6 +12,7 @@ import trimesh
 from renderer.core.cache import AssetStore
 from renderer.core.errors import AssetError, LimitError
 from renderer.core.params import bake_arguments
+from renderer.shells import surface_mapping
 from renderer.shells.base_mesh import BaseMesh, face_vectors, flat_uv, from_corners, vertex_normals
 from renderer.shells.surface_mapping import mapped
 from renderer.shells.surface_teapot import BODY, HANDLE, LID, SPOUT
@@ -190,13 +190,11 @@ class TestUserMesh:
             assert (area > 0).all()
         assert len(flat_uv(uv)) == 0
 
-    def test_what_cannot_be_used_is_named(self, tmp_path: Path) -> None:
+    def test_what_cannot_be_used_is_named(self, monkeypatch: pytest.MonkeyPatch) -> None:
         with pytest.raises(AssetError, match="expired") as caught:
             baked(UserMesh(asset="asset:" + "0" * 64))
         assert caught.value.field == "surface.asset"
-        many = "asset:" + AssetStore().put(
-            trimesh.creation.icosphere(7).export(file_type="ply"), "mesh", "many.ply"
-        )
-        with pytest.raises(LimitError, match="triangles") as refused:
-            baked(UserMesh(asset=many))
+        monkeypatch.setattr(surface_mapping, "MAX_TRIANGLES", 11)
+        with pytest.raises(LimitError, match="12 triangles") as refused:
+            baked(UserMesh(asset=self.stored(trimesh.creation.box((1, 1, 1)))))
         assert refused.value.field == "surface.asset"
