@@ -27,13 +27,14 @@ from renderer.world.state import SceneState
 POSITIONS = 16
 """Sub-pixel positions of a reference, and of the converged picture that is compared with it."""
 
-SECONDS: Mapping[str, tuple[float, float]] = {"forest": (0.0, 160e-6), "clouds": (60.0, 0.0)}
+SECONDS: Mapping[str, tuple[float, float]] = {"forest": (0.0, 160e-6), "clouds": (60.0, 0.0), "shells": (2.0, 160e-6)}
 """What a picture takes on two cores, and each of its rays, to announce the cost: clouds have the same number of paths
 in every picture."""
 
 NOT_THE_WORLD: Mapping[str, tuple[str, ...]] = {
     "forest": ("version", "quality", "view", "time"),
     "clouds": ("version", "quality", "view"),
+    "shells": ("version", "quality", "view"),
 }
 """Fields of a state, beside its slots, that change no reference: time is the world's where clouds drift."""
 
@@ -247,11 +248,50 @@ def _clouds(
     }
 
 
+def _shells_options(state: Any, judge: Judge, cast: Sequence[str] | None) -> dict[str, Any]:
+    """The light is a part of the shells' world: what shines by itself is judged by what shines."""
+    return {"light": state.light.kind, "level": float(getattr(state.light, "level", 1.0))}
+
+
+def _shells(
+    world: Mapping[str, Any], looking: Any, positions: np.ndarray, options: Mapping[str, Any], progress: Progress
+) -> Arrays:
+    """Follow rays through the shell, the pixels' centres first: their picture is one sample a pixel's."""
+    from renderer.reference.shells import Options, render
+    from renderer.reference.shells_world import ShellsWorld, Surface
+
+    base = world["base"]
+    plain = {name: value for name, value in world.items() if name != "base"} | dict(options)
+    shells = ShellsWorld(**plain, surfaces=() if base is None else (Surface(**base),))
+    share = 1 / len(positions)
+    first = render(shells, looking, positions[:1], Options(), lambda done, words: progress(share * done, words))
+    linear, error, seconds = first.radiance, first.standard_error, first.seconds
+    if len(positions) > 1:
+        rest = render(
+            shells,
+            looking,
+            positions[1:],
+            Options(seed=Options.seed + 1),
+            lambda done, words: progress(share + done * (1 - share), words),
+        )
+        linear = share * first.radiance + (1 - share) * rest.radiance
+        error = np.hypot(share * first.standard_error, (1 - share) * rest.standard_error)
+        seconds = first.seconds + rest.seconds
+    mean = float(linear[..., :3].mean())
+    return {
+        "linear": linear,
+        "once": first.radiance,
+        "standard_error": np.array(float(np.sqrt(np.mean(error**2))) / mean if mean > 0 else 0.0),
+        "seconds": np.array(seconds),
+    }
+
+
 OPTIONS: dict[str, Callable[[Any, Judge, Sequence[str] | None], dict[str, Any]]] = {
     "forest": _forest_options,
     "clouds": _clouds_options,
+    "shells": _shells_options,
 }
 """Options of each phenomenon's reference."""
 
-RENDER: dict[str, Callable[..., Arrays]] = {"forest": _forest, "clouds": _clouds}
+RENDER: dict[str, Callable[..., Arrays]] = {"forest": _forest, "clouds": _clouds, "shells": _shells}
 """How each phenomenon's world becomes a reference picture."""

@@ -41,8 +41,9 @@ def spoil(monkeypatch: pytest.MonkeyPatch) -> Callable[[str, str, str], Abstract
     from renderer.clouds import program as clouds
     from renderer.forest import program as forest
     from renderer.gl import source
+    from renderer.shells import program as shells
 
-    composed = (clouds._composed, forest._composed, forest.pass_source)
+    composed = (clouds._composed, forest._composed, forest.pass_source, shells.composed)
 
     @contextmanager
     def spoiled(file: str, right: str, wrong: str) -> Iterator[None]:

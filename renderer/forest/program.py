@@ -109,15 +109,6 @@ void main() {
 #endif
 }"""
 
-BEFORE_SKY = """vec4 before_sky(vec3 light, float opacity, vec3 direction) {
-#if BACKGROUND_SKY == 1
-    return vec4(light + (1.0 - opacity) * (sky_radiance(direction) + sky_sun_disc(direction)), 1.0);
-#else
-    return vec4(light, opacity);
-#endif
-}
-"""
-
 LOOK_BODY = """layout(location = 0) out vec4 look;
 void main() {
     vec2 found;
@@ -195,7 +186,7 @@ def _shading(
     state: ForestState, slots: tuple[str, ...], before: tuple[str, ...], after: tuple[str, ...], body: str, look: int
 ) -> Source:
     sky = state.view.background == "sky"
-    return _composed(_chosen(state, slots), before, after, BEFORE_SKY + body, sky, state.macros, look)
+    return _composed(_chosen(state, slots), before, after, body, sky, state.macros, look)
 
 
 def _chosen(state: ForestState, slots: tuple[str, ...]) -> Chosen:
@@ -208,7 +199,8 @@ def _chosen(state: ForestState, slots: tuple[str, ...]) -> Chosen:
 def _composed(
     chosen: Chosen, before: tuple[str, ...], after: tuple[str, ...], body: str, sky: bool, cover: Macros, look: int = 0
 ) -> Source:
-    files = ["lib/pixel.glsl", "lib/camera.glsl", "lib/sky.glsl", "forest/world.glsl", "forest/events.glsl", *before]
+    files = ["lib/pixel.glsl", "lib/camera.glsl", "lib/sky.glsl", "lib/backdrop.glsl", "forest/world.glsl"]
+    files += ["forest/events.glsl", *before]
     files += [glsl_file("forest", slot, technique.model_fields["kind"].default) for slot, technique, _ in chosen]
     files += after
     declarations = [CAMERA_DECLARATIONS, SKY_DECLARATIONS, WORLD_DECLARATIONS, uniform_declarations(Ground, "ground")]

@@ -1,0 +1,1 @@
+"""Shells: semi-transparent 3D textures over any mesh (Dufort 2005)."""

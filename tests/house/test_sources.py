@@ -6,7 +6,7 @@ import re
 from pathlib import Path
 
 ROOT = Path(__file__).parent.parent.parent
-CITED = re.compile(r"[Ff]ormulas \(?([a-z]\d?)\)?(?![a-z])|\b(00[01]-\d+)\b")
+CITED = re.compile(r"[Ff]ormulas \(?([a-z]\d?)\)?(?![a-z])|\b(00[012]-\d+)\b")
 
 
 def test_every_cited_formula_and_erratum_is_written_down() -> None:

@@ -1,0 +1,1 @@
+"""Techniques of the slot accumulation: how precisely colours are put together."""

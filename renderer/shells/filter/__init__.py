@@ -1,0 +1,1 @@
+"""Techniques of the slot filter: which level of the texture is read."""

@@ -1,0 +1,130 @@
+"""One sample of a picture under way: what its passes share."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from renderer.gl.layers import Kind
+from renderer.gl.program import AnyTexture
+from renderer.gl.source import Source
+from renderer.shells.program import entry_source, variant_of
+from renderer.shells.resident import Placed
+from renderer.world.camera import Orthographic, camera_uniforms, pose
+from renderer.world.projection import view_projection
+from renderer.world.sun import direction
+
+if TYPE_CHECKING:
+    from renderer.shells.renderer import ShellsRenderer
+    from renderer.shells.state import ShellsState
+
+
+@dataclass
+class Frame:
+    """A sample under way.
+
+    Attributes:
+        renderer: its stores. state: the document. shell_key, texture_key: of what is drawn.
+        place: where the shell stands. size, offset, sample: of the picture, as `SceneRenderer.prepare` has them.
+        textures, values: samplers and uniforms that every pass may read.
+    """
+
+    renderer: ShellsRenderer
+    state: ShellsState
+    shell_key: Any
+    texture_key: Any
+    place: Placed
+    size: tuple[int, int]
+    offset: tuple[float, float]
+    sample: int
+    textures: dict[str, AnyTexture]
+    values: dict[str, Any]
+
+    def entries(self) -> tuple[dict[str, AnyTexture], dict[str, Any]]:
+        """Where the camera's rays come into the shell, layer by layer."""
+        key = (self.shell_key, self.state.camera, self.offset, variant_of(self.state).opaque)
+        return self._entries(key, self.state.camera, self.size, self.offset, self.values)
+
+    def from_sun(
+        self, name: str, resolution: int, kinds: Mapping[str, Kind], source: Callable[[ShellsState], Source]
+    ) -> tuple[dict[str, AnyTexture], dict[str, Any]]:
+        """A picture of the whole shell seen from the sun, unless it is still there.
+
+        Args:
+            name: of the picture. resolution: its side in texels.
+            kinds: components and type of each of its textures, by name.
+            source: makes its fragment stage.
+
+        Returns:
+            `shadow_<name>` textures, and the uniforms by which a place finds its texel.
+        """
+        camera = sun_camera(self.place, direction(self.state.sun))
+        size = (resolution, resolution)
+        seen = sun_values(camera, self.place, resolution)
+        values = {**self.values, **seen, "picture_size": size, "pixel_offset": (0.5, 0.5)}
+        values |= {"pixel_angle": 0.0, "pixel_side": camera.width / resolution}
+        key = (self.shell_key, self.texture_key, self.state.voxels, camera, self.state.filter, variant_of(self.state))
+
+        def draw() -> tuple[Source, dict[str, AnyTexture], dict[str, Any]]:
+            textures, found = self._entries(("sun", key), camera, size, (0.5, 0.5), values)
+            return source(self.state), {**self.textures, **textures}, {**values, **found}
+
+        made = self.renderer.seen_from_sun((name, key), size, tuple(kinds.values()), draw)
+        textures = {f"shadow_{part}": texture for part, texture in zip(kinds, made, strict=True)}
+        return textures, {key: value for key, value in seen.items() if key.startswith("shadow_")}
+
+    def _entries(
+        self, key: Any, camera: Any, size: tuple[int, int], offset: tuple[float, float], values: Mapping[str, Any]
+    ) -> tuple[dict[str, AnyTexture], dict[str, Any]]:
+        matrix = view_projection(camera, size, offset, self.place.centre, reach(camera, self.place))
+        return self.renderer.entries.find(
+            key,
+            size,
+            self.renderer.triangles(self.shell_key),
+            entry_source(variant_of(self.state)),
+            self.textures,
+            {**values, "view_projection": matrix},
+        )
+
+
+def reach(camera: Any, place: Placed) -> tuple[float, float]:
+    """Nearest and farthest distance ahead of a camera between which the shell lies [m]."""
+    at = pose(camera)
+    middle = float((place.centre - at.eye) @ at.forward)
+    return max(middle - place.radius, 1e-3 * place.radius), max(middle + place.radius, 2e-3 * place.radius)
+
+
+def moved(camera: Any, size: tuple[int, int], centre: np.ndarray) -> dict[str, Any]:
+    """The camera's uniforms, counted from the middle of the shell."""
+    values: dict[str, Any] = dict(camera_uniforms(camera, *size))
+    values["camera_origin"] = tuple(np.asarray(values["camera_origin"]) - centre)
+    return values
+
+
+def sun_camera(place: Placed, sun: np.ndarray) -> Orthographic:
+    """A parallel view along the sun's rays that just holds the shell."""
+    up = (0.0, 1.0, 0.0) if abs(sun[2]) > 0.9 else (0.0, 0.0, 1.0)
+    return Orthographic(
+        centre=tuple(float(v) for v in place.centre),
+        direction=tuple(-float(v) for v in sun),
+        up=up,
+        width=2.02 * place.radius,
+    )
+
+
+def sun_values(camera: Orthographic, place: Placed, resolution: int) -> dict[str, Any]:
+    """Uniforms of the sun's view: its rays, and how a place finds its texel."""
+    values = moved(camera, (resolution, resolution), place.centre)
+    texel = camera.width / resolution
+    across, down = (np.asarray(values[f"camera_origin_d{axis}"]) / texel**2 for axis in "xy")
+    return values | {
+        "shadow_origin": values["camera_origin"],
+        "shadow_across": tuple(across),
+        "shadow_down": tuple(down),
+        "shadow_along": values["camera_corner"],
+        "shadow_texel": texel,
+        "start_tet": -1,
+    }

@@ -1,0 +1,1 @@
+"""Techniques of the slot light: how matter answers the light."""

@@ -1,0 +1,1 @@
+"""Techniques of the slot order: in which order a ray's segments are put together."""

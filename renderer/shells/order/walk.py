@@ -1,0 +1,31 @@
+"""Order by walking from tetrahedron to tetrahedron."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
+
+from renderer.core.params import param
+from renderer.shells.program import walk_source
+from renderer.shells.technique import OrderTechnique
+
+if TYPE_CHECKING:
+    from renderer.gl.program import AnyTexture
+    from renderer.shells.frame import Frame
+
+
+class Walk(OrderTechnique):
+    """Each ray goes through the faces that tetrahedra share; its order is exact, and cycles do no harm."""
+
+    title: ClassVar[str] = "Walk"
+    caption: ClassVar[str] = "Each ray goes from cell to cell through the faces they share: exact, without sorting."
+    paper: ClassVar[str] = "Garrity 1990, section 3"
+
+    kind: Literal["walk"] = "walk"
+    steps: int = param(
+        1024, label="Most cells", help="That a ray crosses in one go.", cost="build", unit="count", ge=16, le=65536
+    )
+
+    def picture(self, frame: Frame) -> tuple[Any, dict[str, AnyTexture], dict[str, Any]]:
+        """Find where rays come in; the walk itself is the picture's one pass."""
+        textures, values = frame.entries()
+        return walk_source(frame.state), {**frame.textures, **textures}, {**frame.values, **values}

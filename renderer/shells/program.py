@@ -1,0 +1,162 @@
+"""Composes the shells' shaders from the chosen techniques."""
+
+from __future__ import annotations
+
+import functools
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from renderer.core.params import defines, uniform_declarations
+from renderer.core.registry import glsl_file
+from renderer.gl.source import Source, assemble
+from renderer.shells.voxels import Base, Voxels
+from renderer.shells.world_scale import OPAQUE
+from renderer.world.camera import CAMERA_DECLARATIONS
+from renderer.world.sky import SKY_DECLARATIONS
+
+if TYPE_CHECKING:
+    from renderer.shells.state import ShellsState
+    from renderer.shells.technique import ShellsTechnique
+
+INTERPOLATIONS = ("NEAREST", "STRAIGHT", "EXTINCTION")
+
+WORLD_DECLARATIONS = """uniform sampler2D shell_tets;
+uniform sampler3D shell_matter;
+uniform sampler3D shell_normal;
+uniform sampler2D entry_even;     // distance, m, and tetrahedron where rays come in: layers 0, 2, ...
+uniform sampler2D entry_odd;
+uniform int entry_layers;
+uniform int entry_height;         // px, of one layer
+uniform int start_tet;            // that holds the camera, or -1
+uniform float matter_scale;       // 1/m, what 1 in the texture stands for
+uniform float reference_length;   // m, for which the texture's alpha is meant
+uniform float filter_coarsest;    // level
+uniform vec3 shell_size;          // of the texture's box along u, v, w: ratios count alone
+uniform vec3 sun_direction;
+uniform vec3 sun_irradiance;      // W m-2
+uniform vec3 sky_irradiance;      // W m-2
+uniform float pixel_angle;        // rad, width of a pixel in perspective
+uniform float pixel_side;         // m, in a parallel view
+uniform float sample_shift;       // number of the sample, which turns the jitter
+uniform vec2 picture_size;
+uniform vec2 pixel_offset;        // of the sample within its pixel, from the top-left corner"""
+
+ENTRY_DECLARATIONS = """uniform sampler2D entry_before;
+uniform int layer_number;
+uniform int layer_row;            // px, where the layer begins in its texture
+uniform int before_row;"""
+
+ENTRY_BODY = """flat in float number;
+layout(location = 0) out vec2 entry;
+void main() {
+    int owner = int(number + 0.5), tet = owner / 4;
+    ivec2 pixel = ivec2(gl_FragCoord.xy) - ivec2(0, layer_row);
+    Ray ray = pixel_ray(gl_FragCoord.xy - vec2(0.0, float(layer_row)));
+    float t = plane_distance(ray, tet_texel(tet, owner % 4));
+    if (layer_number > 0 && t <= texelFetch(entry_before, pixel + ivec2(0, before_row), 0).x) discard;
+    entry = vec2(t, float(tet));
+}"""
+
+WALK_BODY = """layout(location = 0) out vec4 radiance;
+void main() {
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    Ray ray = pixel_ray(gl_FragCoord.xy);
+    vec4 sum = vec4(0.0);
+    bool met = start_tet >= 0 && order_walk(ray, start_tet, 0.0, sum);
+    for (int layer = 0; layer < entry_layers && !met && sum.a < OPAQUE; layer++) {
+        vec2 entry = entry_of(pixel, layer);
+        if (entry.y < 0.0) break;
+        met = order_walk(ray, int(entry.y), max(entry.x, 0.0), sum);
+    }
+    radiance = before_sky(sum.rgb, sum.a, ray.direction);
+}"""
+
+FIRST = ("lib/pixel.glsl", "lib/camera.glsl", "lib/sky.glsl", "lib/backdrop.glsl", "shells/tetrahedra.glsl",
+         "shells/pixel_ray.glsl")
+
+Chosen = tuple[tuple[str, type["ShellsTechnique"], tuple[tuple[str, str], ...]], ...]
+
+LIT_SLOTS = ("filter", "shadow", "light", "sampling", "accumulation", "order")
+"""Slots whose functions a picture calls, in the order in which they build on each other."""
+
+
+@dataclass(frozen=True)
+class Variant:
+    """What of a picture's case is compiled into its shaders."""
+
+    sky: bool
+    opaque: bool
+    interpolation: str
+
+    def defines(self) -> dict[str, str | int]:
+        """Its macros."""
+        words: dict[str, str | int] = {name: index for index, name in enumerate(INTERPOLATIONS)}
+        return words | {
+            "BACKGROUND_SKY": int(self.sky),
+            "BASE_OPAQUE": int(self.opaque),
+            "INTERPOLATION": self.interpolation.upper(),
+            "OPAQUE": repr(OPAQUE),
+        }
+
+
+def variant_of(state: ShellsState) -> Variant:
+    """What of a state is compiled in."""
+    return Variant(state.view.background == "sky", state.base.opaque, state.voxels.interpolation)
+
+
+def entry_source(variant: Variant) -> Source:
+    """The fragment stage that finds where rays come in."""
+    return composed((), variant, (), ENTRY_BODY, ENTRY_DECLARATIONS)
+
+
+def walk_source(state: ShellsState) -> Source:
+    """The fragment stage that walks each ray through the shell, and lays it before the background."""
+    return composed(chosen(state, LIT_SLOTS), variant_of(state), ("shells/entry.glsl",), WALK_BODY)
+
+
+def chosen(state: ShellsState, slots: tuple[str, ...]) -> Chosen:
+    """Techniques with what they compile in."""
+    taken = state.techniques()
+    return tuple((slot, type(taken[slot]), tuple(defines(taken[slot], slot).items())) for slot in slots)
+
+
+@functools.lru_cache(maxsize=256)
+def composed(techniques: Chosen, variant: Variant, after: tuple[str, ...], body: str, more: str = "") -> Source:
+    """A fragment stage.
+
+    Args:
+        techniques: in the order in which their functions build on each other.
+        after: files after them. body: `main`. more: declarations of the stage's own.
+    """
+    files = [*FIRST]
+    declarations = [world_declarations(), more]
+    macros = variant.defines()
+    if techniques:
+        files.append("shells/matter.glsl")
+    for slot, technique, build in techniques:
+        if slot == "order":
+            files.append("shells/base.glsl")
+        files += technique.includes
+        files.append(glsl_file("shells", slot, technique.model_fields["kind"].default))
+        declarations += technique_declarations(slot, technique)
+        macros.update(build)
+    version = max([(3, 3), *(technique.requires for _, technique, _ in techniques)])
+    return assemble(
+        [*files, *after],
+        version=version,
+        defines=macros,
+        declarations="\n".join(declarations),
+        body=body,
+    )
+
+
+def world_declarations() -> str:
+    """Uniforms of camera, shell, texture and light."""
+    models = (uniform_declarations(Voxels, "voxels"), uniform_declarations(Base, "base"))
+    return "\n".join([CAMERA_DECLARATIONS, SKY_DECLARATIONS, WORLD_DECLARATIONS, *models])
+
+
+def technique_declarations(slot: str, technique: type[ShellsTechnique]) -> list[str]:
+    """Samplers and uniforms of a technique."""
+    samplers = [f"uniform {kind} {slot}_{name};" for name, kind in technique.textures.items()]
+    return [*samplers, uniform_declarations(technique, slot), *technique.extra_declarations]

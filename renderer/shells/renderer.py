@@ -1,0 +1,191 @@
+"""Draws the shells on the GL thread."""
+
+from __future__ import annotations
+
+import math
+from collections import OrderedDict
+from collections.abc import Callable, Hashable, Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from renderer.core.params import uniforms
+from renderer.core.technique import Arrays, BakedArrays
+from renderer.gl.context import GL
+from renderer.gl.layers import Kind, Layers
+from renderer.gl.meshes import Triangles
+from renderer.gl.program import AnyTexture
+from renderer.gl.resident import Resident
+from renderer.gl.source import Source
+from renderer.gl.targets import run_fullscreen
+from renderer.shells.entries import Entries
+from renderer.shells.frame import Frame, moved
+from renderer.shells.resident import Placed, placed, shell_objects
+from renderer.shells.texture.block import reference_length, texture_of
+from renderer.shells.texture.sources import moment_of
+from renderer.shells.textures import Uploaded, upload
+from renderer.world.camera import Orthographic, pose
+from renderer.world.sky import sky_for, sky_uniforms
+from renderer.world.sun import angles, direction
+
+if TYPE_CHECKING:
+    from renderer.shells.state import ShellsState
+
+Baked = Mapping[str, BakedArrays]
+Prepared = tuple[Source, dict[str, AnyTexture], dict[str, Any]]
+
+SHELLS_KEPT, TEXTURES_KEPT = 4, 4
+"""Shells and textures that stay on the GPU."""
+
+SUNS_KEPT = 64 << 20
+"""Bytes kept of what was seen from suns."""
+
+
+class ShellsRenderer:
+    """Shells and textures on the GPU, and the frames drawn with them; one serves every view of the process."""
+
+    def __init__(self, gl: GL) -> None:
+        self._gl = gl
+        self._sky = Resident(gl, 8)
+        self._suns = Resident(gl, 16, SUNS_KEPT)
+        self._shells: OrderedDict[Hashable, tuple[dict[str, Any], Placed]] = OrderedDict()
+        self._textures: OrderedDict[Hashable, Uploaded] = OrderedDict()
+        self.entries = Entries(gl)
+
+    def prepare(
+        self, state: ShellsState, baked: Baked, size: tuple[int, int], offset: tuple[float, float], sample: int
+    ) -> Prepared:
+        """Draw what a sample needs before its one full-screen pass.
+
+        Args:
+            state, baked: the document and what it needed baked.
+            size: (width, height) in pixels.
+            offset: of the sample inside its pixel, from the top-left corner.
+            sample: its number, which turns the jitter.
+        """
+        arrays = {name: entry.arrays for name, entry in baked.items()}
+        shell_key = (baked["shell"].key, state.base.opaque)
+        objects, place = self._shell(shell_key, arrays["shell"], state)
+        texture_key, texture = self._texture(state, baked)
+        values = self._light(state, arrays) | moved(state.camera, size, place.centre) | _pixel(state, size)
+        values |= {
+            "picture_size": size,
+            "pixel_offset": offset,
+            "sample_shift": float(sample),
+            "start_tet": holding(arrays["shell"], state.camera),
+            "matter_scale": texture.scale * state.voxels.density,
+            "reference_length": reference_length(arrays["texture"], state.extrusion.thickness),
+            "filter_coarsest": float(texture.levels),
+            "shell_size": tuple(float(side) for side in arrays["texture"]["size"]),
+            **uniforms(state.voxels, "voxels"),
+            **uniforms(state.base, "base"),
+        }
+        for slot, technique in state.techniques().items():
+            values |= uniforms(technique, slot) | technique.constants(state, arrays)
+        textures: dict[str, AnyTexture] = {
+            "shell_tets": objects["shell_tets"],
+            "shell_matter": texture.matter,
+            "shell_normal": texture.normal,
+            **self._sky_view(state, baked),
+        }
+        frame = Frame(self, state, shell_key, texture_key, place, size, offset, sample, textures, values)
+        looked, said = state.shadow.look(frame)
+        textures |= looked
+        values |= said
+        prepared: Prepared = state.order.picture(frame)
+        return prepared
+
+    def draw(self, prepared: Prepared) -> None:
+        """Put a prepared sample before the background, into the bound framebuffer."""
+        run_fullscreen(self._gl, *prepared)
+
+    def release(self) -> None:
+        """Free everything."""
+        self._sky.release()
+        self._suns.release()
+        self.entries.release()
+        while self._shells:
+            _free(self._shells.popitem()[1][0])
+        while self._textures:
+            self._textures.popitem()[1].release()
+
+    def triangles(self, shell_key: Hashable) -> Triangles:
+        """Those of a shell's boundary."""
+        found: Triangles = self._shells[shell_key][0]["entries"]
+        return found
+
+    def seen_from_sun(
+        self, key: Hashable, size: tuple[int, int], kinds: tuple[Kind, ...], draw: Callable[[], Prepared]
+    ) -> list[AnyTexture]:
+        """Textures drawn from the sun by a full-screen stage, unless they are still there."""
+
+        def make() -> dict[str, Layers]:
+            prepared = draw()
+            layers = Layers(self._gl, *size, kinds)
+            layers.use()
+            run_fullscreen(self._gl, *prepared)
+            return {"layers": layers}
+
+        return list(self._suns.get((key, size), make)["layers"].textures)  # type: ignore[union-attr]
+
+    def _shell(self, key: Hashable, shell: Arrays, state: ShellsState) -> tuple[dict[str, Any], Placed]:
+        if key not in self._shells:
+            place = placed(shell)
+            hollow = not state.base.opaque or int(shell["counts"][0]) > 0
+            self._shells[key] = shell_objects(self._gl, shell, place, hollow), place
+            while len(self._shells) > SHELLS_KEPT:
+                _free(self._shells.popitem(last=False)[1][0])
+        self._shells.move_to_end(key)
+        return self._shells[key]
+
+    def _texture(self, state: ShellsState, baked: Baked) -> tuple[Hashable, Uploaded]:
+        thickness = state.extrusion.thickness
+        moment = moment_of(state.texture)
+        filtered = state.filter.kind != "none"
+        reading = (state.voxels.interpolation, state.voxels.wrap, state.voxels.storage)
+        key = (baked["texture"].key, tuple(moment.items()), thickness, reading, filtered)
+        if key not in self._textures:
+            made = texture_of(baked["texture"].arrays, thickness, **moment)
+            self._textures[key] = upload(self._gl, made, state.voxels, thickness, filtered)
+            while len(self._textures) > TEXTURES_KEPT:
+                self._textures.popitem(last=False)[1].release()
+        self._textures.move_to_end(key)
+        return key, self._textures[key]
+
+    def _light(self, state: ShellsState, arrays: Mapping[str, Arrays]) -> dict[str, Any]:
+        now, sun = sky_for(arrays["sky"], angles(state.sun)[1]), direction(state.sun)
+        return {
+            "sun_direction": sun,
+            "sun_irradiance": now.sun_irradiance,
+            "sky_irradiance": now.sky_irradiance,
+            **sky_uniforms(now, sun),
+        }
+
+    def _sky_view(self, state: ShellsState, baked: Baked) -> dict[str, AnyTexture]:
+        elevation = angles(state.sun)[1]
+
+        def make() -> dict[str, AnyTexture]:
+            return {"sky_view": self._gl.texture2d(sky_for(baked["sky"].arrays, elevation).view)}
+
+        return dict(self._sky.get((baked["sky"].key, elevation), make))  # type: ignore[arg-type]
+
+
+def holding(shell: Arrays, camera: Any) -> int:
+    """Number of the tetrahedron that holds the camera, or -1."""
+    if isinstance(camera, Orthographic):
+        return -1
+    eye = pose(camera).eye
+    inside = (shell["planes"][..., :3] @ eye + shell["planes"][..., 3] <= 0).all(axis=1)
+    return int(np.argmax(inside)) if inside.any() else -1
+
+
+def _pixel(state: ShellsState, size: tuple[int, int]) -> dict[str, float]:
+    """How wide a pixel is: an angle, or a length in a parallel view."""
+    if isinstance(state.camera, Orthographic):
+        return {"pixel_angle": 0.0, "pixel_side": state.camera.width / size[0]}
+    return {"pixel_angle": 2 * math.tan(math.radians(state.camera.field_of_view) / 2) / size[1], "pixel_side": 0.0}
+
+
+def _free(objects: dict[str, Any]) -> None:
+    for held in objects.values():
+        held.release()

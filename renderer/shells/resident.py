@@ -1,0 +1,79 @@
+"""The shell and its texture as the GPU holds them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from renderer.core.technique import Arrays
+from renderer.gl.context import GL
+from renderer.gl.meshes import Triangles
+from renderer.shells.world_scale import BASE, TET_ROW, TET_TEXELS
+
+
+@dataclass(frozen=True)
+class Placed:
+    """Where the shell stands.
+
+    Attributes:
+        centre: (3,) middle of its bounding box [m], which everything on the GPU is counted from.
+        radius: of the sphere round it that holds the shell [m].
+    """
+
+    centre: np.ndarray
+    radius: float
+
+
+def placed(shell: Arrays) -> Placed:
+    """The sphere round a shell."""
+    low, high = shell["positions"].min(axis=0), shell["positions"].max(axis=0)
+    return Placed((low + high) / 2, float(np.linalg.norm(high - low)) / 2)
+
+
+def tet_texels(shell: Arrays, centre: np.ndarray) -> np.ndarray:
+    """(rows, `TET_ROW` * 8, 4) float32 as `shaders/shells/tetrahedra.glsl` reads it."""
+    count = len(shell["tets"])
+    rows = -(-max(count, 1) // TET_ROW)
+    texels = np.zeros((rows * TET_ROW, TET_TEXELS, 4), np.float32)
+    planes, maps = shell["planes"], shell["to_texture"]
+    texels[:count, :4, :3] = planes[..., :3]
+    texels[:count, :4, 3] = planes[..., 3] + planes[..., :3] @ centre
+    texels[:count, 4:7, :3] = maps[..., :3]
+    texels[:count, 4:7, 3] = maps[..., 3] + maps[..., :3] @ centre
+    texels[:count, 7] = shell["neighbour"]
+    return texels.reshape(rows, TET_ROW * TET_TEXELS, 4)
+
+
+def boundary(shell: Arrays, centre: np.ndarray, base: bool) -> tuple[np.ndarray, np.ndarray]:
+    """Faces through which rays come into the shell.
+
+    Args:
+        centre: taken for the origin [m]. base: whether they may come through the base.
+
+    Returns:
+        corners (F, 3, 3) [m], counter-clockwise seen from outside, and 4 tet + face (F,).
+    """
+    neighbour = shell["neighbour"]
+    outside = (neighbour < 0) & (base | (neighbour != BASE))
+    tet, face = np.nonzero(outside)
+    return faces_of(shell, centre, tet, face)
+
+
+def faces_of(shell: Arrays, centre: np.ndarray, tet: np.ndarray, face: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Corners (F, 3, 3) [m] of faces of tetrahedra, counter-clockwise seen from outside of them, and 4 tet + face."""
+    others = np.array([[1, 2, 3], [0, 2, 3], [0, 1, 3], [0, 1, 2]])[face]
+    corners = shell["positions"][shell["tets"][tet[:, None], others]] - centre
+    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    inward = np.einsum("fi,fi->f", normal, shell["planes"][tet, face, :3]) < 0
+    corners[inward] = corners[inward][:, [0, 2, 1]]
+    return corners, 4 * tet + face
+
+
+def shell_objects(gl: GL, shell: Arrays, place: Placed, base: bool) -> dict[str, Any]:
+    """Texture of the tetrahedra, and the triangles through which rays come in."""
+    return {
+        "shell_tets": gl.texture2d(tet_texels(shell, place.centre), "nearest"),
+        "entries": Triangles(gl, *boundary(shell, place.centre, base)),
+    }

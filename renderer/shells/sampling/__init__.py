@@ -1,0 +1,1 @@
+"""Techniques of the slot sampling: how a segment of a ray reads the texture."""

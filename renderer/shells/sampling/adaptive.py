@@ -1,0 +1,22 @@
+"""As many samples as a segment crosses voxels."""
+
+from __future__ import annotations
+
+from typing import ClassVar, Literal
+
+from renderer.core.params import param
+from renderer.shells.technique import ShellsTechnique
+
+
+class Adaptive(ShellsTechnique):
+    """Steps of a voxel of the level that is read; empty voxels are passed without being lit."""
+
+    title: ClassVar[str] = "Adaptive"
+    caption: ClassVar[str] = "Steps as long as a voxel of the level that is read; empty voxels are passed unlit."
+    paper: ClassVar[str] = "Levoy 1990, section 3"
+
+    kind: Literal["adaptive"] = "adaptive"
+    rate: float = param(1.0, label="Rate", help="Samples a voxel.", ge=0.05, le=64)
+    most: int = param(
+        256, label="Most samples", help="Of one segment.", cost="build", unit="count", ge=1, le=4096
+    )

@@ -1,0 +1,1 @@
+"""Techniques of the slot shadow: what the shell leaves of the sun."""

@@ -1,0 +1,69 @@
+"""A map from the sun that keeps how much of it is left at each depth."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
+
+from renderer.core.params import param
+from renderer.gl.source import Source
+from renderer.shells.program import chosen, composed, variant_of
+from renderer.shells.technique import ShadowTechnique
+
+if TYPE_CHECKING:
+    from renderer.gl.program import AnyTexture
+    from renderer.shells.frame import Frame
+    from renderer.shells.state import ShellsState
+
+BODY = """layout(location = 0) out vec4 nodes;
+layout(location = 1) out vec4 rest;
+void main() {
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    Ray ray = pixel_ray(gl_FragCoord.xy);
+    SunWay way = SunWay(vec4(NEVER), 0.0, 0.0);
+    bool met = false;
+    int layer = 0;
+    do {
+        vec2 entry = entry_of(pixel, layer);
+        if (entry.y < 0.0) break;
+        met = sun_walk(ray, int(entry.y), max(entry.x, 0.0), way);
+        layer++;
+    } while (layer < entry_layers && !met && way.depth < SUN_LEVELS.w);
+    nodes = way.nodes;
+    rest = vec4(way.depth, way.end, 0.0, 0.0);
+}"""
+
+
+class DeepShadowMap(ShadowTechnique):
+    """Each texel keeps the distances at which the optical depth towards the sun passes four levels."""
+
+    title: ClassVar[str] = "Deep shadow map"
+    caption: ClassVar[str] = "Seen from the sun, each texel keeps how much light is left at each depth."
+    paper: ClassVar[str] = "Lokovic & Veach 2000, section 3"
+    textures: ClassVar[dict[str, str]] = {"nodes": "sampler2D", "rest": "sampler2D"}
+    includes: ClassVar[tuple[str, ...]] = ("shells/sun_walk.glsl",)
+    extra_declarations: ClassVar[tuple[str, ...]] = (
+        "uniform vec3 shadow_origin;  // of the map's rays: corner, m",
+        "uniform vec3 shadow_across;  // texels/m",
+        "uniform vec3 shadow_down;",
+        "uniform vec3 shadow_along;   // unit vector away from the sun",
+        "uniform float shadow_texel;  // m",
+    )
+
+    kind: Literal["deep_shadow_map"] = "deep_shadow_map"
+    resolution: int = param(
+        512, label="Resolution", help="Texels along a side of the map.", unit="px", cost="host", ge=16, le=4096
+    )
+    bias: float = param(1.0, label="Bias", help="By which places are moved towards the sun.", unit="px", ge=0, le=16)
+    softness: float = param(1.0, label="Softness", help="Width over which texels are read.", unit="px", ge=0, le=16)
+
+    def look(self, frame: Frame) -> tuple[dict[str, AnyTexture], dict[str, Any]]:
+        """The map of this sun, unless it is still there."""
+        seen = frame.from_sun("deep", self.resolution, {"nodes": (4, "f4"), "rest": (4, "f4")}, pass_source)
+        return seen
+
+
+def pass_source(state: ShellsState) -> Source:
+    """The fragment stage that follows the sun's rays."""
+    return composed(
+        chosen(state, ("filter",)), variant_of(state), ("shells/sun_walk.glsl", "shells/entry.glsl"), BODY
+    )

@@ -1,0 +1,68 @@
+"""The shells as plain arrays and numbers, for whoever draws them without the techniques: the reference."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from renderer.core.technique import Arrays
+from renderer.shells.texture.block import texture_of
+from renderer.shells.texture.sources import moment_of
+from renderer.world.sky import sky_for, sky_radiance
+from renderer.world.sun import angles, direction
+
+if TYPE_CHECKING:
+    from renderer.shells.state import ShellsState
+
+NEEDS = ("sky", "surface", "shell", "texture")
+"""Bakes that make the world."""
+
+
+def world_arrays(state: ShellsState, baked: Mapping[str, Arrays]) -> dict[str, Any]:
+    """What stands where, and the light it stands in.
+
+    Args:
+        state: the document; techniques but the light, and the view, are no part of the world.
+        baked: arrays of `NEEDS`.
+
+    Returns:
+        By name, as `renderer.reference.shells_world.ShellsWorld` takes them: the shell's tetrahedra, the texture as it
+        is at the moment, the light, the surface under the shell where it is opaque, as plain arrays `base`, and the
+        background.
+    """
+    elevation = angles(state.sun)[1]
+    now, sun = sky_for(baked["sky"], elevation), direction(state.sun)
+    shell = baked["shell"]
+    texture = texture_of(baked["texture"], state.extrusion.thickness, **moment_of(state.texture))
+    return {
+        "positions": shell["positions"],
+        "tets": shell["tets"],
+        "texture": shell["texture"],
+        "colour": texture.colour,
+        "reference_length": texture.reference_length / max(state.voxels.density, 1e-9),
+        "normal": texture.normal,
+        "size": texture.size,
+        "interpolation": state.voxels.interpolation,
+        "wrap": state.voxels.wrap,
+        "light": state.light.kind,
+        "level": getattr(state.light, "level", 1.0),
+        "glow_radiance": (state.voxels.glow,) * 3,
+        "sun": tuple(float(v) for v in sun),
+        "e_sun": tuple(float(v) for v in now.sun_irradiance),
+        "e_sky": tuple(float(v) for v in now.sky_irradiance),
+        "base": _base(state, baked["surface"]) if state.base.opaque else None,
+        "background": lambda directions: sky_radiance(now, sun, directions),
+    }
+
+
+def _base(state: ShellsState, surface: Arrays) -> dict[str, Any]:
+    """Corners, reflectance and normals of the surface, (F, 3, 3) each."""
+    faces = surface["faces"]
+    corners = surface["vertices"][faces]
+    return {
+        "corners": corners,
+        "albedo": np.broadcast_to(np.asarray(state.base.colour), corners.shape),
+        "normals": surface["normals"][faces],
+    }

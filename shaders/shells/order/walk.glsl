@@ -1,0 +1,27 @@
+// Order by walking: each ray goes from tetrahedron to tetrahedron through the faces they share. After Garrity 1990, "Raytracing
+// irregular volume data"; formulas e, "Per-ray walk".
+//
+// Symbols: tet, enter: where the ray comes into the shell (m); sum: light and opacity gathered so far, front to back.
+// The order along each ray is exact without any sorting, cycles do no harm, and the walk ends where nothing more is seen.
+
+// Returns whether the ray met the opaque surface on its way.
+bool order_walk(Ray ray, int tet, float enter, inout vec4 sum) {
+    int steps = 0, face = -1, last = tet;
+    do {
+        Exit exit = tet_exit(ray, tet, enter);
+        sampling_segment(ray, tet_segment(ray, tet, enter, exit.t), sum);
+        sum = accumulation_kept(sum);
+        enter = exit.t;
+        face = exit.face;
+        last = tet;
+        tet = tet_beyond(tet, face);
+        steps++;
+    } while (tet >= 0 && steps < ORDER_STEPS && sum.a < OPAQUE);
+#if BASE_OPAQUE == 1
+    if (tet == BEYOND_BASE) {
+        sum += (1.0 - sum.a) * vec4(base_radiance(ray, last, face, enter), 1.0);
+        return true;
+    }
+#endif
+    return false;
+}

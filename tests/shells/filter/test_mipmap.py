@@ -1,0 +1,45 @@
+"""Mip levels: a far board has its mean brightness, a near one its cells, and thin columns keep their share."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from tests.shells.filter.boards import board, contrast
+
+Draw = Callable[..., np.ndarray]
+MIPMAP = {"kind": "mipmap"}
+
+
+def near(draw: Draw) -> float:
+    """Contrast of two cells of the board under a pixel each."""
+    camera = {"kind": "orthographic", "centre": [0, 0, 0], "direction": [0, 0, -1], "up": [0, 1, 0], "width": 0.25}
+    return float(2 * draw({"filter": MIPMAP, "camera": camera}, board(), size=16)[..., 0].std())
+
+
+def test_a_far_board_is_grey(draw: Draw) -> None:
+    assert contrast(draw, MIPMAP, board()) < 0.05
+
+
+def test_a_near_board_is_not(draw: Draw) -> None:
+    assert near(draw) > 0.6
+
+
+def test_plates_keep_the_share_that_they_cover(draw: Draw) -> None:
+    """Of opaque plates over a quarter of the ground a quarter is seen from afar: opacities are averaged, not matter."""
+    block = np.zeros((8, 64, 64, 4), np.float32)
+    block[..., :3] = 1.0
+    block[3, ::2, ::2, 3] = 0.9999
+    camera = {"kind": "orthographic", "centre": [0, 0, 0], "direction": [0, 0, -1], "up": [0, 1, 0], "width": 1.6}
+    found = draw({"filter": MIPMAP, "camera": camera}, block, reference_length=0.5 / 8, size=6)
+    assert float(found[..., 3].mean()) == pytest.approx(0.25, abs=0.02)
+
+
+@pytest.mark.parametrize(
+    ("right", "wrong"), [("pixel_width(distance) * finest", "finest"), ("0.0, filter_coarsest)", "0.0, 0.0)")]
+)
+def test_a_wrong_width_is_found(draw: Draw, spoil: Callable, right: str, wrong: str) -> None:
+    with spoil("shells/filter/mipmap.glsl", right, wrong):
+        assert near(draw) < 0.3 or contrast(draw, MIPMAP, board()) > 0.2
