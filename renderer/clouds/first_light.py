@@ -19,7 +19,7 @@ from renderer.clouds.cloud_map import thickness_curve, turned
 from renderer.clouds.first_light_kernel import DEPTHS, gather, light_cells
 from renderer.clouds.land import horizon_towards
 from renderer.clouds.radiosity.maps import BounceMaps, square_cells
-from renderer.clouds.weather import round_site
+from renderer.clouds.weather import layer_round_site
 from renderer.clouds.world_scale import AIR_TOP, LAND_CELL
 from renderer.core.technique import Arrays
 from renderer.world.camera import pose
@@ -147,12 +147,12 @@ def _weather(state: CloudsState, fields: Arrays) -> np.ndarray:
     planet, wide = state.planet, reach(state)
 
     def make() -> np.ndarray:
-        systems = round_site(fields["systems"], planet.latitude, planet.longitude, planet.radius)
+        systems = layer_round_site(fields["systems"], planet, state.layer)
         at = (0.5 + places(wide) / (4 * planet.radius)) * len(systems) - 0.5
         grid = np.meshgrid(at, at, indexing="ij")
         return np.asarray(map_coordinates(systems, grid, order=1, mode="nearest"), np.float32)
 
-    return _kept(WEATHERS, fields, (planet, wide), make)
+    return _kept(WEATHERS, fields, (planet, wide, state.layer.ends, state.layer.ends_azimuth), make)
 
 
 def depth_at(state: CloudsState, fields: Arrays, shift: tuple[float, float]) -> np.ndarray:

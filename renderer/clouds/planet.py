@@ -40,6 +40,20 @@ class Layer(Model):
         ge=0,
         le=1,
     )
+    ends: float = param(
+        0.0,
+        label="Ends after",
+        help="Distance from the site to the front at which the clouds end; 0 lets them go on round the Earth.",
+        unit="m",
+        cost="host",
+        ge=0,
+        le=1.0e7,
+        step=5000,
+    )
+    ends_azimuth: float = param(
+        270.0, label="Ends towards", help="Where the front lies, from north by east.", unit="deg", cost="host", ge=-360,
+        le=360,
+    )
     wind: float = param(8.0, label="Wind", help="Speed at which it drifts.", unit="m s-1", cost="host", ge=0, le=80)
     wind_azimuth: float = param(
         70.0, label="Wind to", help="Where it drifts, from north by east.", unit="deg", cost="host", ge=-360, le=360

@@ -114,12 +114,12 @@ PRESETS = {
     ),
     "sunset_below": Preset(
         "Lit from below",
-        "The sun has set for the ground, and lights the base of the clouds.",
+        "The sun has set for the ground, and lights the base of the clouds from beyond their front.",
         {
             "camera": _look((-6000, -7000, 900), (-16000, -7500, 2400), 50),
             "sun": _sun(268, -0.8),
             "view": {"exposure": -2.0},
-            "layer": {"thickness": 200.0},
+            "layer": {"thickness": 200.0, "ends": 80000.0, "ends_azimuth": 268.0},
             "clouds": _clouds(cover=0.9, variation=0.8, side=32000.0),
         },
     ),

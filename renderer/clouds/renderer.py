@@ -184,8 +184,8 @@ class CloudsRenderer:
         held = dict(self._baked.get(world, lambda: world_textures(self._gl, arrays)))
         place = (state.planet.latitude, state.planet.longitude, state.planet.radius)
         held |= self._baked.get(
-            ("weather", baked["fields"].key, place),
-            lambda: weather_texture(self._gl, arrays["fields"], state.planet),
+            ("weather", baked["fields"].key, place, state.layer.ends, state.layer.ends_azimuth),
+            lambda: weather_texture(self._gl, arrays["fields"], state.planet, state.layer),
         )
         azimuth = angles(state.sun)[0]
         tops = tuple(state.layer.base + share * state.layer.thickness for share in LIT_TOPS)

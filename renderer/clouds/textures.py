@@ -11,7 +11,7 @@ import numpy as np
 from renderer.clouds.air import skylight
 from renderer.clouds.cloud_map import thickness_map
 from renderer.clouds.land import horizon_of_layer, horizon_towards, tops
-from renderer.clouds.weather import round_site
+from renderer.clouds.weather import layer_round_site
 from renderer.core.technique import Arrays
 from renderer.gl.context import GL
 from renderer.gl.program import AnyTexture
@@ -50,10 +50,9 @@ def world_textures(gl: GL, baked: Mapping[str, Arrays]) -> dict[str, AnyTexture]
     }
 
 
-def weather_texture(gl: GL, fields: Arrays, planet: Any) -> dict[str, AnyTexture]:
-    """The weather systems round the site."""
-    found = round_site(fields["systems"], planet.latitude, planet.longitude, planet.radius)
-    return {"cloud_systems": mipmapped(gl, found, False)}
+def weather_texture(gl: GL, fields: Arrays, planet: Any, layer: Any) -> dict[str, AnyTexture]:
+    """What weather systems and the layer's front leave of it round the site."""
+    return {"cloud_systems": mipmapped(gl, layer_round_site(fields["systems"], planet, layer), False)}
 
 
 LIT_TOPS = (0.5, 2.0)

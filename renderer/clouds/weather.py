@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import functools
 import math
+from typing import Any
 
 import numpy as np
 from scipy.ndimage import map_coordinates, spline_filter
@@ -81,6 +82,30 @@ def _noise(rng: np.random.Generator, points: np.ndarray, frequency: float, octav
         at = points @ turned * frequency * 2.0**octave + rng.uniform(0, LATTICE, 3)
         total += 0.66**octave * map_coordinates(lattice, at.T, order=2, mode="grid-wrap", prefilter=False)
     return np.asarray((total - total.mean()) / total.std())
+
+
+FRONT = 5.0e4
+"""Distance over which the layer thins out at its front, m: two texels of the map round a site."""
+
+
+def layer_round_site(found: np.ndarray, planet: Any, layer: Any) -> np.ndarray:
+    """What weather and the layer's own front leave of it round a document's site: as of `round_site`.
+
+    Args:
+        found: of `systems`. planet, layer: of the document.
+    """
+    sky = round_site(found, planet.latitude, planet.longitude, planet.radius)
+    if layer.ends <= 0:
+        return sky
+    axis = (np.arange(ROUND_SITE) + 0.5) / ROUND_SITE * 2 - 1
+    east, north = np.meshgrid(axis, axis)
+    azimuth = math.radians(layer.ends_azimuth)
+    half = np.minimum(np.hypot(east, north), 1.0)
+    # The front is a circle of latitude round the far pole: places as far along the azimuth as the layer reaches.
+    along = (east * math.sin(azimuth) + north * math.cos(azimuth)) * 2 * np.sqrt(1 - half**2)
+    ahead = planet.radius * np.arcsin(np.clip(along, -1, 1))
+    inside = np.clip(0.5 - (ahead - layer.ends) / FRONT, 0, 1)
+    return np.asarray((inside * inside * (3 - 2 * inside)) * (sky if len(sky) == ROUND_SITE else 1.0), np.float32)
 
 
 def round_site(found: np.ndarray, latitude: float, longitude: float, radius: float) -> np.ndarray:

@@ -10,7 +10,7 @@ import numpy as np
 
 from renderer.clouds.cloud_map import thickness_map
 from renderer.clouds.frame_values import cloud_side, drift, globe_axes
-from renderer.clouds.weather import round_site
+from renderer.clouds.weather import layer_round_site
 from renderer.clouds.world_scale import LAND_CELL
 from renderer.core.technique import Arrays
 from renderer.world.sky import SOLAR_CONSTANT
@@ -63,9 +63,7 @@ def world_arrays(state: CloudsState, baked: Mapping[str, Arrays]) -> dict[str, A
         "cloud_side": cloud_side(state),
         "cloud_repeats": state.clouds.kind != "asset" or state.clouds.repeats,
         "cloud_drift": drift(state),
-        "systems": round_site(
-            baked["fields"]["systems"], state.planet.latitude, state.planet.longitude, state.planet.radius
-        ),
+        "systems": layer_round_site(baked["fields"]["systems"], state.planet, state.layer),
         "sun": tuple(float(v) for v in direction(state.sun)),
         "sun_radius": ANGULAR_RADIUS,
         "sun_irradiance": SOLAR_CONSTANT,

@@ -12,15 +12,22 @@ struct Lit {
     vec3 kept;  // share of what lies behind that comes through unscattered
 };
 
+// Share of a low sun's beam that the layer leaves to a point at its base or under it: the ray leaves the layer where it meets it
+// again, far away. mu: the sun's zenith cosine at the point.
+float sun_past_layer(vec3 point, float altitude, float mu) {
+    float r = planet_radius + altitude, rise = max(layer_base - altitude, 0.0);
+    float along = r * mu, square = rise * (2.0 * r + rise), root = sqrt(along * along + square);
+    float way = mu > 0.0 ? square / max(along + root, 1.0) : root - along;
+    Cover cover = cover_at(place_of(point + sun_direction * way), 4.0e4); // a grazing ray is that long in the layer
+    float slant = geometry_slant((along + way) / (planet_radius + layer_base), layer_base, max(layer_thickness, 1.0e-3));
+    return exp(-min(layer_extinction * slant, GAPS) * cover.thickness / max(layer_thickness, 1.0e-3));
+}
+
 // Irradiance of a plane that faces the sun at a point of the layer, W m-2; mu: the sun's zenith cosine there.
 vec3 sun_at_layer(vec3 point, float altitude, float mu) {
     vec3 light = sun_irradiance * sun_through_air(altitude, mu);
 #if TWILIGHT == 1
-    float far = -2.0 * (planet_radius + layer_base) * mu; // where a ray that dips below the layer meets it again
-    Cover cover = cover_at(place_of(point + sun_direction * max(far, 0.0)), 4.0e4); // a grazing ray is that long in the layer
-    float slant = geometry_slant(abs(mu), layer_base, max(layer_thickness, 1.0e-3));
-    float depth = min(layer_extinction * slant, GAPS) * cover.thickness / max(layer_thickness, 1.0e-3);
-    light *= mu < 0.0 ? exp(-min(depth, AIR_DARKEST)) : 1.0;
+    light *= mu < 0.0 ? sun_past_layer(point, layer_base, mu) : 1.0;
 #endif
     return light;
 }
@@ -41,9 +48,10 @@ Lit stretch_light(Stretch s, vec3 origin, vec3 direction, vec3 albedo) {
     float cosine = dot(direction, up), mu = dot(up, sun_direction);
     bool from_above = cosine < 0.0;
     vec3 tilted = normalize(up - layer_relief * vec3(s.slope, 0.0));
-    // Light leaks round a swell, so that none is black and no shadow has an edge: SWELL_SHADE is what reaches one end-on.
-    float facing = dot(tilted, sun_direction);
-    float leaning = mu > 0.0 ? 0.5 * (facing + sqrt(facing * facing + 4.0 * SWELL_SHADE * SWELL_SHADE)) : -mu;
+    // Light leaks round a swell, so that none is black and no shadow has an edge: SWELL_SHADE is what reaches a steep one end-on.
+    // A level layer has no swells, and a low sun no more than its cosine.
+    float facing = dot(tilted, sun_direction), leak = min(SWELL_SHADE, layer_relief * length(s.slope));
+    float leaning = mu > 0.0 ? 0.5 * (facing + sqrt(facing * facing + 4.0 * leak * leak)) : -mu;
     float mu_sun = clamp(s.thickness / geometry_slant(leaning, layer_base, s.thickness), 1.0e-3, 1.0);
     vec3 level_ray = direction - cosine * up, level_sun = sun_direction - mu * up;
     // Light comes along -sun_direction and leaves along -direction.

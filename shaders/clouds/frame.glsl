@@ -55,7 +55,13 @@ vec4 radiance_along(vec3 origin, vec3 direction, Path path, vec4 ground, vec3 al
     Airs airs = airs_along(path, origin, direction, stop, cut);
     // The part of the air that lies under the layer takes its shade from one place.
     float under = CAMERA_SIDE < 0 ? min(0.5 * cut, 3.0e4) : cut + 0.5 * min(stop - cut, 6.0e4);
-    float lit = air_lit(origin + under * direction, path_altitude(path, under), dot(up_at(origin + under * direction), sun_direction));
+    vec3 shaded = origin + under * direction;
+    float altitude = path_altitude(path, under), mu = dot(up_at(shaded), sun_direction);
+#if TWILIGHT == 1
+    float lit = air_lit(shaded, altitude, mu, sun_past_layer(shaded, altitude, mu));
+#else
+    float lit = air_lit(shaded, altitude, mu, 1.0);
+#endif
 #if CAMERA_SIDE < 0
     airs.light *= lit;
 #else

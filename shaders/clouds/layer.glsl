@@ -57,11 +57,11 @@ float slab_diffuse_share(float optical_depth) {
 }
 
 // Share of the light that the layer leaves to the air at a point below it: Eddington's, for even light and g = 0.85.
-// mu: the sun's zenith cosine there. A point that the sun reaches from below the layer keeps it all.
-float air_lit(vec3 point, float altitude, float mu) {
+// mu: the sun's zenith cosine there. past: share of a low sun's beam that comes past the layer, from below it or through its gaps.
+float air_lit(vec3 point, float altitude, float mu, float past) {
     float rise = layer_base + 0.5 * layer_thickness - altitude;
     float slant = rise / max(mu, 0.05);
     Cover cover = cover_at(place_of(point + sun_direction * slant), 2000.0);
     float share = slab_diffuse_share(layer_extinction * cover.thickness / max(mu, 0.2) * 0.5);
-    return rise > 0.0 ? mix(1.0, share, clamp(10.0 * mu + 0.5, 0.0, 1.0)) : 1.0;
+    return rise > 0.0 ? mix(past, share, clamp(10.0 * mu + 0.5, 0.0, 1.0)) : 1.0;
 }

@@ -92,6 +92,35 @@ def test_the_base_is_lit_red_from_below_by_a_sun_that_has_set(shown: Shown) -> N
     assert low[:14].mean() > 20 * gone[:14].mean()
 
 
+def test_a_layer_without_end_hides_a_sun_that_has_set(shown: Shown, spoil: Callable) -> None:
+    """The sun's way to the base and to the air under it leads through the layer far away: what is left is the sky's."""
+
+    def closed() -> np.ndarray:
+        return shown("sunset_below", layer={"ends": 0.0})[1][:14].mean(axis=(0, 1))
+
+    front, hidden = shown("sunset_below")[1][:14].mean(axis=(0, 1)), closed()
+    assert front[0] > 2.0 * front[2], "red from beyond the front"
+    assert hidden[0] < 1.2 * hidden[2]
+    assert hidden[0] < 0.45 * front[0]
+    right, wrong = "return exp(-min(layer_extinction * slant, GAPS)", "return exp(-0.0 * (slant + GAPS)"
+    with spoil("clouds/cloud.glsl", right, wrong):
+        assert closed()[0] > 2 * hidden[0]
+
+
+def test_a_level_layer_under_a_grazing_sun_has_its_cosine_s_light(shown: Shown, spoil: Callable) -> None:
+    """Its top has no swells round which light could leak; seen from above before sunset it was twice too bright."""
+    even = {"clouds": {"kind": "uniform"}, "phase": {"kind": "henyey_greenstein"}, "bounce": {"kind": "none"}}
+
+    def growth() -> float:
+        return float(shown("glory", sun={"elevation": 6.0}, **even)[1].mean()) / float(
+            shown("glory", sun={"elevation": 1.0}, **even)[1].mean()
+        )
+
+    assert growth() > 4.2
+    with spoil("clouds/cloud.glsl", "leak = min(SWELL_SHADE, layer_relief * length(s.slope))", "leak = SWELL_SHADE"):
+        assert growth() < 4.0
+
+
 def test_the_clouds_edge_before_the_sun_outshines_its_middle(shown: Shown) -> None:
     _, picture = shown("silver_lining")
     light = picture.mean(axis=2)
