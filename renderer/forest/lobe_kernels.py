@@ -91,7 +91,7 @@ def refit(total, shown, normal, starts, eyes, suns, least, most, result):
     slope, c, tried = np.empty(4), np.empty(4), np.empty(4)
     for row in range(total.shape[0]):
         for column in range(total.shape[1]):
-            n, count = normal[row, column], 0
+            n, count = normal[row, column], np.int64(0)
             for v in range(eyes.shape[0]):
                 if shown[row, column, v] <= 1e-6:
                     continue

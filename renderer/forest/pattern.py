@@ -76,7 +76,7 @@ class Atlas:
             standing.foot,
             standing.rank,
             AXES,
-            standing.cells * CELL,
+            np.ascontiguousarray(standing.cells * CELL),
             self.mask,
             self.normal,
             self.sums,

@@ -25,6 +25,9 @@ NEAR = 200.0
 WIDE = 2e4
 """A way that meets no cloud before this may meet land that its beginning stands above, m."""
 
+WHOLE, BROKEN = np.bool_(True), np.bool_(False)
+"""Whether a path has met the droplets' peak alone; numpy's, since for each literal of Python all would be compiled."""
+
 LONG, GOES_ON = 150, 0.98
 """Events after which a path ends by chance, and the chance that it goes on."""
 
@@ -185,7 +188,7 @@ def _follow(scene, hero, p, d, u, whole, factor, path, state, work, marched, spa
             if then == 2:
                 return kept
             if then == 1:
-                whole = False
+                whole = BROKEN
                 continue
         if first:
             what[0 if end >= FAR else 1 if t < stop else 2] = 1.0
@@ -200,7 +203,7 @@ def _follow(scene, hero, p, d, u, whole, factor, path, state, work, marched, spa
             goes_on, p, d = _ground(scene, hero, p, factor, path, state, work, spare, out)
             if not goes_on:
                 return kept
-            whole = False
+            whole = BROKEN
         if event > LONG:
             if uniform(state) >= GOES_ON:
                 return kept
@@ -244,12 +247,12 @@ def _sample(scene, start, u, state, work, marched, spare, sums, first, light):
     first[:] = 0.0
     first[3] = u[3]
     p, d = (start[0], start[1], start[2]), (start[3], start[4], start[5])
-    kept = _follow(scene, hero, p, d, u[2], True, factor, path, state, work, marched, spare, first, light)
+    kept = _follow(scene, hero, p, d, u[2], WHOLE, factor, path, state, work, marched, spare, first, light)
     if first[13] > 0.0:
         for c in range(3):
             factor[c], path[c] = first[4 + c], 1.0
         p, d = (first[7], first[8], first[9]), (first[10], first[11], first[12])
-        _follow(scene, hero, p, d, -1.0, False, factor, path, state, work, marched, spare, first, light)
+        _follow(scene, hero, p, d, -1.0, BROKEN, factor, path, state, work, marched, spare, first, light)
     return 1.0 if first[0] == 0.0 else 1.0 - kept
 
 

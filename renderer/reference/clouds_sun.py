@@ -37,8 +37,8 @@ LIKELY, UNLIKELY = 12.0, 0.3
 
 COS_PEAK = math.cos(PEAK)
 
-CLOUD, GROUND, MOLECULES, HAZE = range(4)
-"""What stands at a point."""
+CLOUD, GROUND, MOLECULES, HAZE = (np.int64(kind) for kind in range(4))
+"""What stands at a point; numpy's integers, since what takes a literal of Python is compiled for each anew."""
 
 
 @njit(cache=True, inline="always")

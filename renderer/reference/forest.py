@@ -135,7 +135,7 @@ def render(
     with ThreadPoolExecutor(options.threads or os.cpu_count() or 1) as pool:
         for number, (across, down) in enumerate(offsets):
             origins, directions = (
-                np.ascontiguousarray(part, np.float64) for part in rays((float(across), float(down)))
+                np.require(part, np.float64, ["C", "W"]) for part in rays((float(across), float(down)))
             )
             if total is None or variance is None:
                 total, variance = np.zeros((*origins.shape[:2], 4)), np.zeros(origins.shape[:2])

@@ -27,9 +27,11 @@ from renderer.reference.forest_march import (
     ONLY_OWN,
     OPAQUE,
     SIGMA,
+    SOLID,
     TK,
     TU,
     TV,
+    ZERO,
     S,
     march,
 )
@@ -60,7 +62,8 @@ def visibility(scene, switches, x, y, z, step, mode, own, empty):
         return 0.0
     if mode == NONE and not switches[TERRAIN]:
         return 1.0
-    status, _, tau, _ = march(scene, (x, y, z), sun, 0.0, 0.0, DEPTH_LIMIT, step, switches[TERRAIN], mode, own, empty)
+    status, _, tau, _ = march(scene, (x, y, z), sun, 0.0, 0.0, DEPTH_LIMIT, step, switches[TERRAIN] != 0, mode, own,
+                           empty)
     return 0.0 if status in (GROUND, OPAQUE) else math.exp(-tau)
 
 
@@ -164,13 +167,13 @@ def _scatter(
         return 0.0, 0, sum_sky
     # an even number of strata, so that each has a neighbour to tell the variance from
     strata = 2 * max(1, math.ceil(0.5 * sum_sun / quantum))
-    part, e, passed, variance, before = sum_sun / strata, 0, light[0, 0], 0.0, 0.0
+    part, at, passed, variance, before = sum_sun / strata, ZERO, light[0, 0], 0.0, 0.0
     for k in range(strata):
         target = (k + uniform(seed, pixel, first + k)) * part
-        e, passed = pick(light, 0, n, target, e, passed)
-        seen = _seen(scene, switches, o, d, record[e], shadow_step, empty)
+        at, passed = pick(light, 0, n, target, at, passed)
+        seen = _seen(scene, switches, o, d, record[at], shadow_step, empty)
         for c in range(3):
-            total[c] += part * seen * light[e, 3 + c] / light[e, 0]
+            total[c] += part * seen * light[at, 3 + c] / light[at, 0]
         if k % 2:
             variance += (part * (seen - before)) ** 2
         before = seen
@@ -197,11 +200,11 @@ def rows(scene, switches, origins, directions, behind, first, last, step_of, qua
             d = (directions[row, column, 0], directions[row, column, 1], directions[row, column, 2])
             step = min(step_of[0] / max(abs(d[2]), 1e-9), step_of[1])
             total[:] = 0.0
-            s, tau, used, skywards, status, variance = 0.0, 0.0, 0, 0, FULL, 0.0
+            s, tau, used, skywards, status, variance = 0.0, 0.0, ZERO, ZERO, FULL, 0.0
             pixel = (row * width + column) * 4096 + sample
             while status == FULL:
                 before = tau
-                status, s, tau, n = march(scene, o, d, s, tau, DEPTH_LIMIT, step, True, ALL, nowhere, record)
+                status, s, tau, n = march(scene, o, d, s, tau, DEPTH_LIMIT, step, SOLID, ALL, nowhere, record)
                 if n:
                     more, drawn, even = _scatter(scene, switches, o, d, record, light, n, before, shadow_step,
                                                  quanta[0], seed, pixel, used, empty, voxel, total)

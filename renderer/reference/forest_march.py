@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
 from numba import njit
 
 from renderer.reference.forest_lookup import alpha_at, extinction, foot, lattice, plane, rhombus, stands
@@ -17,8 +18,17 @@ from renderer.reference.forest_world import BLOCK, NOWHERE, TILES
 LEFT, GROUND, OPAQUE, FULL = 0, 1, 2, 3
 """How a march ended: it left the world, met the ground, ran out of light, or filled its record."""
 
-ALL, NOT_OWN, ONLY_OWN, NONE = 0, 1, 2, 3
-"""Which trees a ray meets: every one, all but its own, its own alone, or none."""
+ALL, NOT_OWN, ONLY_OWN, NONE = (np.int64(mode) for mode in range(4))
+"""Which trees a ray meets: every one, all but its own, its own alone, or none.
+
+Numpy's integers, as `SOLID` and counters that start at `ZERO`: for a literal of Python the march, the largest function
+here, would be compiled once more.
+"""
+
+SOLID = np.bool_(True)
+"""The ground stops a ray."""
+
+ZERO = np.int64(0)
 
 S, DS, SIGMA, TU, TV, TK = range(6)
 """Columns of the record: distance of the midpoint (m), step (m), extinction (1/m), texel coordinates."""
@@ -208,7 +218,7 @@ def march(scene, o, d, s, tau, limit, step, solid, mode, own, record):
     x0, y0 = o[0] / scene.cell + 0.5 * last, 0.5 * last - o[1] / scene.cell
     if d[2] < 0.0 and o[2] + d[2] * s > ceiling:
         s = (ceiling - o[2]) / d[2]
-    n = 0
+    n = ZERO
     while s < scene.reach and not (d[2] >= 0.0 and o[2] + d[2] * s > ceiling):
         x, y = x0 + dx * (s + NUDGE), y0 + dy * (s + NUDGE)
         column, row = math.floor(x / BLOCK), math.floor(y / BLOCK)

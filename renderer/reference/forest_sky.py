@@ -16,7 +16,7 @@ from numba import njit
 
 from renderer.reference.forest_leaves import is_wood, leaves, pick, uniform
 from renderer.reference.forest_lookup import foot, ground_normal, tint, voxel_at
-from renderer.reference.forest_march import ALL, GROUND, OPAQUE, TK, TU, TV, S, march
+from renderer.reference.forest_march import ALL, GROUND, OPAQUE, SOLID, TK, TU, TV, ZERO, S, march
 
 STEP_U, STEP_V = 0.7548776662466927, 0.5698402909980532
 """Steps of the sequence R2: powers of the inverse plastic number."""
@@ -70,7 +70,7 @@ def _through(scene, x, y, z, ray, limit, step, empty):
     """Share of the light that comes along a ray from the sky: everything that stands is in its way, and the land."""
     if ray[2] <= 0.0:
         return 0.0
-    status, _, tau, _ = march(scene, (x, y, z), ray, 0.0, 0.0, limit, step, True, ALL, (0.0, 0.0), empty)
+    status, _, tau, _ = march(scene, (x, y, z), ray, 0.0, 0.0, limit, step, SOLID, ALL, (0.0, 0.0), empty)
     return 0.0 if status in (GROUND, OPAQUE) else math.exp(-tau)
 
 
@@ -89,7 +89,7 @@ def sky_on_canopy(scene, o, d, record, light, n, total_even, limit, step, quantu
     if total_even <= 0.0 or scene.sky_power <= 0.0:
         return 0.0, 0
     strata = 2 * max(1, math.ceil(0.5 * total_even / quantum))
-    part, e, passed, variance, last = total_even / strata, 0, light[0, 6], 0.0, 0.0
+    part, e, passed, variance, last = total_even / strata, ZERO, light[0, 6], 0.0, 0.0
     to_eye = (-d[0], -d[1], -d[2])
     for k in range(strata):
         target = (k + uniform(seed, pixel, DRAWS + PER_RAY * (before + k) + 2)) * part

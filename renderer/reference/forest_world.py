@@ -209,7 +209,7 @@ def prepare(world: ForestWorld) -> Scene:
     # one-sided differences at the edges, central ones elsewhere; rows run south
     slope_y, slope_x = (np.ascontiguousarray(g) for g in np.gradient(z, world.cell))
     even = np.broadcast_to(np.array(world.e_sky) / math.pi, (1, 1, 3))
-    sky = np.ascontiguousarray(even if world.sky is None else world.sky, np.float64)
+    sky = np.require(even if world.sky is None else world.sky, np.float64, ["C", "W"])  # a read-only type compiles anew
     sky_rows, sky_columns, sky_power = sky_table(sky)
     alpha = _alphas(world)
     return Scene(

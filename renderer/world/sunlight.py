@@ -87,6 +87,8 @@ class Light:
         rows, columns = nodes[:, 0], nodes[:, 1]
         share = np.clip((self.ground[rows, columns] - low) / max(high - low, 1e-6), 0.0, 1.0).astype(np.float64)
         normals = land.normals(self.ground, self.cell_size)[rows, columns]
+        # one type, whatever the land came as, or all is compiled again
+        surface = np.require(surface, np.float32, ["C", "W"])
         levels = kernels.pyramid(surface)
         steps = along(self.suns.azimuths, self.cell_size)
         around = np.arange(SKY_DIRECTIONS, dtype=np.float64) * (2 * np.pi / SKY_DIRECTIONS)

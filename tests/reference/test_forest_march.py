@@ -142,7 +142,7 @@ def test_ground_is_hit_exactly_on_the_bilinear_surface() -> None:
 def test_own_tree_and_other_trees_multiply_to_all() -> None:
     world = grove()
     scene = prepare(world)
-    switches = np.array([True] * 4 + [False])
+    switches = np.array([1] * 4 + [0])
     seen = []
     for x, y in POINTS:
         z = lookup.bilinear(scene.elevation, 8.0, x, y) + 8.0

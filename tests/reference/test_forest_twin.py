@@ -125,7 +125,7 @@ def test_unshadowed_canopy_agrees_with_even_steps() -> None:
 
 def test_visibility_agrees_with_even_steps_to_the_sun() -> None:
     scene, sun = prepare(WORLD), np.array(WORLD.sun)
-    switches, nothing = np.array([True] * 4 + [False]), np.empty((0, COLUMNS))
+    switches, nothing = np.array([1] * 4 + [0]), np.empty((0, COLUMNS))
     expected, found = [], []
     for x, y in np.random.default_rng(6).uniform(-30, 100, (40, 2)):
         start = np.array([x, y, nodes(WORLD.elevation, WORLD.cell, np.array([[x, y]]))[0] + 1.0])
