@@ -43,7 +43,7 @@ def spoil(monkeypatch: pytest.MonkeyPatch) -> Callable[[str, str, str], Abstract
     from renderer.gl import source
     from renderer.shells import program as shells
 
-    composed = (clouds._composed, forest._composed, forest.pass_source, shells.composed)
+    composed = (clouds.composed, forest._composed, forest.pass_source, shells.composed)
 
     @contextmanager
     def spoiled(file: str, right: str, wrong: str) -> Iterator[None]:

@@ -15,7 +15,7 @@ from renderer.core.params import uniforms
 from renderer.core.technique import Arrays
 from renderer.world.camera import Orthographic
 from renderer.world.sky import SOLAR_CONSTANT
-from renderer.world.sun import direction
+from renderer.world.sun import ANGULAR_RADIUS, direction
 
 if TYPE_CHECKING:
     from renderer.clouds.state import CloudsState
@@ -52,9 +52,15 @@ def air_frame(eye: Any, radius: float, sun: Any) -> dict[str, Any]:
     if np.linalg.norm(level) < 1e-6:
         level = np.cross(up, (1.0, 0.0, 0.0) if abs(up[0]) < 0.9 else (0.0, 1.0, 0.0))
     above = distance > radius + AIR_TOP
+    east = np.cross(up, (0.0, 1.0, 0.0) if abs(up[1]) < 0.9 else (1.0, 0.0, 0.0))
+    east /= -np.linalg.norm(east)
+    ahead = level / np.linalg.norm(level)
+    turn = math.atan2(np.dot(ahead, np.cross(up, east)), np.dot(ahead, east)) / (2 * math.pi) + 0.5
     return {
         "air_up": tuple(up),
-        "air_ahead": tuple(level / np.linalg.norm(level)),
+        "air_ahead": tuple(ahead),
+        "air_east": tuple(east),
+        "air_turn": turn,
         "air_horizon": math.pi - math.asin(radius / distance),
         "air_limb": math.pi - math.asin((radius + AIR_TOP) / distance) if above else 0.0,
     }
@@ -73,6 +79,20 @@ def variant_of(state: CloudsState, values: Mapping[str, Any]) -> Variant:
         side=(-1 if altitude < state.layer.base else int(altitude > top)) if table else 0,
         twilight=not (table and high and altitude < AIR_TOP / 2),
     )
+
+
+def shows_disc(values: Mapping[str, Any]) -> bool:
+    """Whether the sun's disc may be in a picture, by the uniforms of its camera, size and sun."""
+    sun, size = np.asarray(values["sun_direction"], np.float64), values["picture_size"]
+    corner, dx, dy = (np.asarray(values[f"camera_{name}"], np.float64) for name in ("corner", "dx", "dy"))
+    corners = [corner + x * dx + y * dy for x in (0, size[0]) for y in (0, size[1])]
+    middle = corner + 0.5 * (size[0] * dx + size[1] * dy)
+    widest = max(_between(middle, one) for one in corners)
+    return _between(middle, sun) < widest + 2 * ANGULAR_RADIUS
+
+
+def _between(a: np.ndarray, b: np.ndarray) -> float:
+    return math.atan2(float(np.linalg.norm(np.cross(a, b))), float(a @ b))
 
 
 def excess(eye: Any, radius: float) -> tuple[float, float]:

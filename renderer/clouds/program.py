@@ -46,13 +46,17 @@ uniform sampler2D air_passed;     // optical depths of the same
 uniform sampler2D traced_scout;    // distance to the ground from one pixel of each block, m
 uniform sampler2D traced_ground;   // distance to the ground, m, and its normal
 uniform sampler2D traced_albedo;
-uniform sampler2D traced_first;    // stretches in the layer: middle, m, optical depth, thickness, m, apparent cosine
-uniform sampler2D traced_second;
-uniform sampler2D traced_slopes;   // of their upper sides
-uniform sampler2D traced_overhead; // thickness over the ground, m
+uniform sampler2D traced_first;    // stretch in the layer: middle, m, optical depth, thickness, m, apparent cosine
+uniform sampler2D traced_second;   // the next: middle, optical depth, apparent cosine; m to the air under the layer
+uniform sampler2D traced_slopes;   // of the first one's upper side; shares that both leave of what is behind
+uniform sampler2D traced_look;     // place in the air's tables (clouds/air_look.glsl), to the layer and to the end
+uniform sampler2D traced_kept;     // share that the air before the layer keeps; what is shown (clouds/frame.glsl)
+uniform sampler2D traced_past;     // share that all air and the layer keep; thickness over the ground, m
 uniform vec2 camera_excess;        // m2, a pair
 uniform vec3 air_up;              // of the camera
 uniform vec3 air_ahead;           // level, towards the sun
+uniform vec3 air_east;            // level, from which azimuths are counted in turns; half a turn is added
+uniform float air_turn;           // of the sun
 uniform float air_horizon;        // rad from the zenith
 uniform float air_limb;           // rad, where air begins for a camera above it
 uniform float air_haze;           // against very clear air
@@ -101,35 +105,7 @@ void main() {
     vec3 normal = land_normal(place, up);
     vec3 bare = ground_albedo(point, up, place, path_altitude(path, t), pixel_angle * t);
     found = t < NEVER ? vec4(t, normal) : vec4(-1.0);
-    albedo = vec4(land_albedo(bare, normal, up, place, pixel_angle * t), 1.0);
-}"""
-
-LAYER_BODY = """layout(location = 0) out vec4 first;
-layout(location = 1) out vec4 second;
-layout(location = 2) out vec4 slopes;
-layout(location = 3) out float overhead;
-void main() {
-    vec3 origin, direction;
-    Path path = pixel_path(ivec2(gl_FragCoord.xy), origin, direction);
-    float t = texelFetch(traced_ground, ivec2(gl_FragCoord.xy), 0).x;
-    float stop = t >= 0.0 ? t : NEVER;
-    vec4 legs = layer_legs(path, layer_base, layer_base + max(layer_thickness * layer_highest, 1.0), stop);
-    // Below the base, and above the layer towards the sky, only the stretch behind the lowest point is there. Few rays
-    // have both, and the second turn is skipped where none of their neighbours has.
-    int leg = CAMERA_SIDE < 0 || legs.y <= 0.0 ? 1 : 0;
-    Stretch near = Stretch(0.0, 0.0, 1.0, 1.0, vec2(0.0)), far = near;
-    int turn = 0;
-    do {
-        vec2 nominal = leg == 0 ? legs.xy : legs.zw;
-        Stretch one = stretch_of(path, origin, direction, leg, nominal, stop, pixel_angle);
-        if (turn == 0) near = one; else far = one;
-        turn++;
-        leg++;
-    } while (leg == 1 && legs.w > 0.0);
-    first = vec4(near.t, near.depth, near.thickness, near.mu_view);
-    second = vec4(far.t, far.depth, far.thickness, far.mu_view);
-    slopes = vec4(near.slope, far.slope);
-    overhead = cover_at(place_of(origin + t * direction), max(layer_base, pixel_angle * t)).thickness;
+    albedo = vec4(t < NEVER ? land_albedo(bare, normal, up, place, pixel_angle * t) : planet_albedo, 1.0);
 }"""
 
 AIR_BODY = """layout(location = 0) out vec4 texel;
@@ -137,27 +113,9 @@ void main() {
     texel = vec4(air_texel(gl_FragCoord.xy, %s), 1.0);
 }"""
 
-SHADE_BODY = """layout(location = 0) out vec4 radiance;
-void main() {
-    vec3 origin, direction;
-    Path path = pixel_path(ivec2(gl_FragCoord.xy), origin, direction);
-    ivec2 pixel = ivec2(gl_FragCoord.xy);
-    vec4 ground = texelFetch(traced_ground, pixel, 0), slopes = texelFetch(traced_slopes, pixel, 0);
-    vec4 near = texelFetch(traced_first, pixel, 0), far = texelFetch(traced_second, pixel, 0);
-    vec3 albedo = texelFetch(traced_albedo, pixel, 0).rgb;
-    float overhead = texelFetch(traced_overhead, pixel, 0).r;
-    Stretch first = Stretch(near.x, near.y, near.z, near.w, slopes.xy);
-    Stretch second = Stretch(far.x, far.y, far.z, far.w, slopes.zw);
-    radiance = radiance_along(origin, direction, path, ground, albedo, overhead, first, second);
-}"""
-
 WORLD_FILES = ("lib/pixel.glsl", "lib/camera.glsl", "clouds/path.glsl", "clouds/layer.glsl", "clouds/air.glsl")
 
 Chosen = tuple[tuple[str, type["CloudsTechnique"], tuple[tuple[str, str], ...]], ...]
-
-SHADE_SLOTS = ("geometry", "phase", "scattering", "cloud_shadow", "basis", "bounce")
-"""Slots whose functions the picture calls, in the order in which they build on each other."""
-
 
 @dataclass(frozen=True)
 class Variant:
@@ -178,39 +136,34 @@ class Variant:
 
 def scout_source(variant: Variant) -> Source:
     """The fragment stage that finds the ground from one pixel of each block."""
-    return _composed((), variant, ("clouds/ground.glsl",), SCOUT_BODY)
+    return composed((), variant, ("clouds/ground.glsl",), SCOUT_BODY)
 
 
 def ground_source(variant: Variant) -> Source:
     """The fragment stage that finds the ground; no sun and no cloud is in it."""
-    return _composed((), variant, ("clouds/ground.glsl",), GROUND_BODY)
-
-
-def layer_source(state: CloudsState, variant: Variant) -> Source:
-    """The fragment stage that finds each ray's stretches inside the layer; no sun is in it."""
-    return _composed(_chosen(state, ("geometry",)), variant, ("clouds/stretch.glsl",), LAYER_BODY)
+    return composed((), variant, ("clouds/ground.glsl",), GROUND_BODY)
 
 
 def air_source(variant: Variant, light: bool) -> Source:
     """The fragment stage that fills the table of the air's light as the camera sees it, or of its optical depth."""
-    return _composed((), variant, ("clouds/air_table.glsl",), AIR_BODY % ("true" if light else "false"))
+    return composed((), variant, ("clouds/air_table.glsl",), AIR_BODY % ("true" if light else "false"))
 
 
-def shade_source(state: CloudsState, variant: Variant) -> Source:
-    """The fragment stage that lights what was traced."""
-    files = ("clouds/air_table.glsl", "clouds/air_look.glsl", "clouds/ground.glsl", "clouds/stretch.glsl")
-    return _composed(
-        _chosen(state, SHADE_SLOTS), variant, (*files, "clouds/cloud.glsl", "clouds/frame.glsl"), SHADE_BODY
-    )
-
-
-def _chosen(state: CloudsState, slots: tuple[str, ...]) -> Chosen:
+def chosen_of(state: CloudsState, slots: tuple[str, ...]) -> Chosen:
+    """The techniques of some slots, with their macros."""
     chosen = state.techniques()
     return tuple((slot, type(chosen[slot]), tuple(defines(chosen[slot], slot).items())) for slot in slots)
 
 
 @functools.lru_cache(maxsize=256)
-def _composed(chosen: Chosen, variant: Variant, after: tuple[str, ...], body: str) -> Source:
+def composed(
+    chosen: Chosen, variant: Variant, after: tuple[str, ...], body: str, extra: tuple[str, ...] = ()
+) -> Source:
+    """A fragment stage.
+
+    Args:
+        chosen: techniques that it calls. after: files behind theirs. body: its `main`. extra: macros that are defined.
+    """
     files = [*WORLD_FILES]
     declarations = [world_declarations()]
     macros: dict[str, str | int] = _limits() | {
@@ -218,6 +171,7 @@ def _composed(chosen: Chosen, variant: Variant, after: tuple[str, ...], body: st
         "AIR_TABLE": int(variant.table),
         "CAMERA_SIDE": variant.side,
         "TWILIGHT": int(variant.twilight),
+        **dict.fromkeys(extra, 1),
     }
     for slot, technique, build in chosen:
         files += technique.includes

@@ -7,7 +7,17 @@ from typing import TYPE_CHECKING, Any
 
 import moderngl
 
-from renderer.clouds.frame_values import air_frame, cloud_side, excess, moves, pixel_angle, variant_of, world_values
+from renderer.clouds.frame_passes import Pass, layer_source, lit_passes
+from renderer.clouds.frame_values import (
+    air_frame,
+    cloud_side,
+    excess,
+    moves,
+    pixel_angle,
+    shows_disc,
+    variant_of,
+    world_values,
+)
 from renderer.clouds.program import (
     AIR_AROUND,
     AIR_ROWS,
@@ -16,9 +26,7 @@ from renderer.clouds.program import (
     Variant,
     air_source,
     ground_source,
-    layer_source,
     scout_source,
-    shade_source,
 )
 from renderer.clouds.textures import (
     LIT_TOPS,
@@ -32,9 +40,9 @@ from renderer.core.params import uniforms
 from renderer.core.technique import Arrays, BakedArrays
 from renderer.gl.context import GL
 from renderer.gl.layers import Kind, Layers, LayerStore
+from renderer.gl.parts import run_parts
 from renderer.gl.program import AnyTexture
 from renderer.gl.resident import Resident
-from renderer.gl.source import Source
 from renderer.gl.targets import run_fullscreen
 from renderer.world.camera import camera_uniforms
 from renderer.world.sun import angles
@@ -43,7 +51,7 @@ if TYPE_CHECKING:
     from renderer.clouds.state import CloudsState
 
 Baked = Mapping[str, BakedArrays]
-Prepared = tuple[Source, dict[str, AnyTexture], dict[str, Any]]
+Prepared = tuple[list[Pass], dict[str, AnyTexture], dict[str, Any]]
 
 GROUND_LAYERS: dict[str, Kind] = {"traced_ground": (4, "f4"), "traced_albedo": (4, "f2")}
 """What is traced of the ground, and how it is stored."""
@@ -52,11 +60,13 @@ LAYER_LAYERS: dict[str, Kind] = {
     "traced_first": (4, "f4"),
     "traced_second": (4, "f4"),
     "traced_slopes": (4, "f2"),
-    "traced_overhead": (1, "f4"),
+    "traced_look": (4, "nu2"),
+    "traced_kept": (4, "f2"),
+    "traced_past": (4, "f2"),
 }
-"""What is traced of the layer."""
+"""What is traced of the layer and of the air before and behind it."""
 
-GROUNDS_KEPT, STRETCHES_KEPT = 32 << 20, 48 << 20
+GROUNDS_KEPT, STRETCHES_KEPT = 32 << 20, 68 << 20
 """Bytes of traced samples kept, so that a moved sun only lights them again: four of 512 x 512."""
 
 SCOUTS_KEPT = 1 << 20
@@ -78,7 +88,7 @@ class CloudsRenderer:
         self._moment = Resident(gl, 24, MOMENTS_KEPT)
         self._scouts = LayerStore(gl, ((1, "f4"),), SCOUTS_KEPT)
         self._grounds = LayerStore(gl, tuple(GROUND_LAYERS.values()), GROUNDS_KEPT)
-        self._stretches = LayerStore(gl, tuple(LAYER_LAYERS.values()), STRETCHES_KEPT)
+        self._stretches = LayerStore(gl, tuple(LAYER_LAYERS.values()), STRETCHES_KEPT, depth=True)
         self._airs = LayerStore(gl, ((4, "f4"),), AIRS_KEPT)
 
     def prepare(
@@ -101,9 +111,10 @@ class CloudsRenderer:
         for slot, technique in state.techniques().items():
             values |= uniforms(technique, slot) | technique.constants(state, arrays)
         variant = variant_of(state, values)
-        textures |= self._traced(state, baked, (size, offset), variant, values, textures)
         textures |= self._air_tables(state, baked, variant, values, textures)
-        return shade_source(state, variant), textures, values
+        textures |= self._traced(state, baked, (size, offset), variant, values, textures)
+        disc = variant.sky and shows_disc(values)
+        return lit_passes(state, variant, disc), textures, values
 
     def _traced(
         self,
@@ -131,13 +142,15 @@ class CloudsRenderer:
             zip(GROUND_LAYERS, self._grounds.get(ground_key, sample[0], draw_ground), strict=True)
         )
         moment = state.time if moves(state) or state.layer.wind > 0 else 0.0
-        layer_key = (ground_key, state.layer, state.clouds, moment, baked["fields"].key, state.geometry)
+        keys = (baked["fields"].key, baked["air"].key)
+        layer_key = (ground_key, state.layer, state.clouds, moment, keys, state.geometry)
 
         def draw_layer(layers: Layers) -> None:
             layers.use()
-            run_fullscreen(self._gl, layer_source(state, variant), {**textures, **found}, values)
+            run_fullscreen(self._gl, layer_source(state, variant), {**textures, **found}, values, writes_depth=True)
 
-        found |= zip(LAYER_LAYERS, self._stretches.get(layer_key, sample[0], draw_layer), strict=True)
+        names = (*LAYER_LAYERS, "traced_depth")
+        found |= zip(names, self._stretches.get(layer_key, sample[0], draw_layer), strict=True)
         return found
 
     def _air_tables(
@@ -168,7 +181,9 @@ class CloudsRenderer:
 
     def draw(self, prepared: Prepared) -> None:
         """Light a prepared sample: linear premultiplied radiance into the bound framebuffer."""
-        run_fullscreen(self._gl, *prepared)
+        passes, textures, values = prepared
+        parts = [(part.source, part.where) for part in passes]
+        run_parts(self._gl, parts, textures["traced_depth"], textures, values)  # type: ignore[arg-type]
 
     def release(self) -> None:
         """Free every texture."""

@@ -103,7 +103,8 @@ class SceneRenderer(Protocol):
         """
 
     def draw(self, prepared: Any) -> None:
-        """Draw a prepared sample, in one pass, as linear premultiplied radiance into the bound framebuffer."""
+        """Draw a prepared sample as linear premultiplied radiance into the bound framebuffer, with one pass or by
+        adding several; see `renderer.gl.targets.Accumulator.draw`."""
 
     def release(self) -> None:
         """Free every GL object."""

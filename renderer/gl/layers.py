@@ -34,19 +34,22 @@ class Layers:
         gl: the context's objects.
         width, height: size in pixels.
         kinds: number of components (1, 2 or 4) and moderngl's name of the component type of each texture.
+        depth: whether a texture of depths stands behind them, as the last of `textures`.
 
     Raises:
         LimitError: larger than the machine can draw.
     """
 
-    def __init__(self, gl: GL, width: int, height: int, kinds: Sequence[Kind]) -> None:
+    def __init__(self, gl: GL, width: int, height: int, kinds: Sequence[Kind], depth: bool = False) -> None:
         check_drawable(gl, width, height)
         self.size = (width, height)
         self.textures = [gl.ctx.texture((width, height), components, dtype=dtype) for components, dtype in kinds]
         for texture in self.textures:
             texture.filter = moderngl.NEAREST, moderngl.NEAREST
             texture.repeat_x = texture.repeat_y = False
-        self._framebuffer = gl.ctx.framebuffer(self.textures)
+        behind = gl.ctx.depth_texture((width, height)) if depth else None
+        self._framebuffer = gl.ctx.framebuffer(list(self.textures), behind)
+        self.textures += [behind] if behind is not None else []
 
     def use(self) -> None:
         """Draw into them from now on, over their whole area."""
@@ -64,12 +67,13 @@ class LayerStore:
 
     Args:
         gl: the context's objects.
-        kinds: as in `Layers`.
+        kinds, depth: as in `Layers`.
         bytes_kept: size of all layers together; one picture is kept whatever its size.
     """
 
-    def __init__(self, gl: GL, kinds: Sequence[Kind], bytes_kept: int) -> None:
+    def __init__(self, gl: GL, kinds: Sequence[Kind], bytes_kept: int, depth: bool = False) -> None:
         self._gl = gl
+        self._depth = depth
         self._kinds = tuple(kinds)
         self._bytes_kept = bytes_kept
         self._held: OrderedDict[Hashable, Layers] = OrderedDict()
@@ -104,10 +108,11 @@ class LayerStore:
             return spare
         if spare is not None:
             spare.release()
-        return Layers(self._gl, *size, self._kinds)
+        return Layers(self._gl, *size, self._kinds, self._depth)
 
     def _bytes(self) -> int:
         return sum(self._bytes_of(layers.size) for layers in self._held.values())
 
     def _bytes_of(self, size: tuple[int, int]) -> int:
-        return size[0] * size[1] * sum(components * BYTES[dtype] for components, dtype in self._kinds)
+        behind = 4 * self._depth
+        return size[0] * size[1] * (behind + sum(components * BYTES[dtype] for components, dtype in self._kinds))

@@ -74,12 +74,21 @@ class ProgramCache:
             self._release(next(iter(self._programs)))
         return program
 
-    def draw(self, program: moderngl.Program) -> None:
-        """Run a program of this cache once per pixel of the bound framebuffer (stages/fullscreen.vert)."""
+    def draw(self, program: moderngl.Program, wait: bool = True) -> None:
+        """Run a program of this cache once per pixel of the bound framebuffer (stages/fullscreen.vert).
+
+        Args:
+            wait: for the drawing, where the CPU draws; or the caller does by `wait()`, after several drawings.
+        """
         key = self._keys[id(program)]
         if key not in self._screens:
             self._screens[key] = self._ctx.vertex_array(program, [])
         self._screens[key].render(mode=moderngl.TRIANGLES, vertices=3)
+        if wait:
+            self.wait()
+
+    def wait(self) -> None:
+        """Wait for what was drawn, where the CPU draws."""
         if self._finish is not None:
             self._finish()
 

@@ -128,13 +128,16 @@ class Accumulator:
         self._mean_of = 0
 
     def draw(self, sample_index: int, draw: Callable[[], None]) -> None:
-        """Have `draw` add a sample itself, with one full-screen pass into the bound sum; sample 0 starts afresh.
+        """Have `draw` add a sample itself into the bound sum: with one full-screen pass, or with several that add
+        (`renderer.gl.parts`); sample 0 starts afresh.
 
         Raises:
             UmbrageError: a sample out of turn.
         """
         self._check_turn(sample_index)
         self._sum.use()
+        if sample_index == 0:
+            self._sum.clear()
         with _blending(self._gl, add=sample_index > 0):
             draw()
         self.samples = sample_index + 1
@@ -229,23 +232,31 @@ class ToneMap:
 
 
 def run_fullscreen(gl: GL, fragment: str | Source, textures: Mapping[str, AnyTexture],
-                   values: Mapping[str, Any]) -> None:
+                   values: Mapping[str, Any], writes_depth: bool = False) -> None:
     """Run a fragment stage once per pixel of the bound framebuffer.
 
     Args:
         fragment: an assembled stage, or the path of one that stands alone.
         textures: samplers by name.
         values: other uniforms by name.
+        writes_depth: whether what it gives as depth is kept.
     """
-    source = _stage(fragment) if isinstance(fragment, str) else fragment
-    program = gl.programs.get(_stage("stages/fullscreen.vert"), source)
+    source = stage(fragment) if isinstance(fragment, str) else fragment
+    program = gl.programs.get(stage("stages/fullscreen.vert"), source)
     set_uniforms(program, values)
     bind_textures(program, textures)
+    if writes_depth:
+        gl.ctx.enable(moderngl.DEPTH_TEST)
+        gl.ctx.depth_func = "1"  # always
     gl.programs.draw(program)
+    if writes_depth:
+        gl.ctx.disable(moderngl.DEPTH_TEST)
+        gl.ctx.depth_func = "<"
 
 
 @functools.cache
-def _stage(file: str) -> Source:
+def stage(file: str) -> Source:
+    """The stage of a file that stands alone."""
     return assemble([file])
 
 

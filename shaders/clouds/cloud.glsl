@@ -7,11 +7,6 @@
 const float SWELL_SHADE = 0.07;
 const float GAPS = 8.0; // optical depth of a closed layer to a grazing sun: gaps let some light through a broken one
 
-struct Lit {
-    vec3 light; // W m-2 sr-1
-    vec3 kept;  // share of what lies behind that comes through unscattered
-};
-
 // Share of a low sun's beam that the layer leaves to a point at its base or under it: the ray leaves the layer where it meets it
 // again, far away. mu: the sun's zenith cosine at the point.
 float sun_past_layer(vec3 point, float altitude, float mu) {
@@ -41,8 +36,8 @@ bool sunlit_side(float mu, bool from_above) { return true; }
 bool sunlit_side(float mu, bool from_above) { return (mu > 0.0) == from_above; }
 #endif
 
-// albedo: of the ground behind.
-Lit stretch_light(Stretch s, vec3 origin, vec3 direction, vec3 albedo) {
+// W m-2 sr-1. albedo: of the ground behind.
+vec3 stretch_light(Stretch s, vec3 origin, vec3 direction, vec3 albedo) {
     vec3 point = origin + s.t * direction;
     vec3 up = up_at(point);
     float cosine = dot(direction, up), mu = dot(up, sun_direction);
@@ -67,19 +62,16 @@ Lit stretch_light(Stretch s, vec3 origin, vec3 direction, vec3 albedo) {
     vec3 below = (beam * max(mu, 0.0) + from_top) * (1.0 - reflected);
     vec3 from_base = bounce_cloud(place_of(point), BounceHere(below, albedo, reflected));
     light += (from_above ? reflected * from_top + passed * from_base : passed * from_top + reflected * from_base) / AIR_PI;
-    bool there = s.t > 0.0 && s.depth > 1.0e-6;
-    return Lit(there ? light : vec3(0.0), there ? scattering_direct(s.depth, s.mu_view) : vec3(1.0));
+    return light;
 }
 
 // The same where a ray from above leaves the layer again, hundreds of kilometres behind the horizon: what comes through a layer
 // seen from below, alike in all directions.
-Lit stretch_light_far(Stretch s, vec3 origin, vec3 direction) {
+vec3 stretch_light_far(Stretch s, vec3 origin, vec3 direction) {
     float altitude = layer_base, mu = dot(up_at(origin + s.t * direction), sun_direction);
     vec3 beam = sun_irradiance * sun_through_air(altitude, mu) * max(mu, 0.0) + air_skylight_at(mu);
     vec3 direct = scattering_direct(s.depth, s.mu_view);
-    vec3 light = beam * max(1.0 - scattering_diffuse_reflectance(s.depth) - direct, vec3(0.0)) / AIR_PI;
-    bool there = s.t > 0.0 && s.depth > 1.0e-6;
-    return Lit(there ? light : vec3(0.0), there ? direct : vec3(1.0));
+    return beam * max(1.0 - scattering_diffuse_reflectance(s.depth) - direct, vec3(0.0)) / AIR_PI;
 }
 
 // What the ground sends to the eye, W m-2 sr-1. normal, albedo: of the land at the point. overhead: the layer's thickness, m.

@@ -67,6 +67,11 @@ Path path_of(vec3 origin, vec3 direction) {
     return path_from(origin, excess_of(origin), direction);
 }
 
+// The same where only altitudes along the ray are asked, which half a metre in b moves by millimetres.
+Path path_near(vec3 origin, float c, vec3 direction) {
+    return Path(dot(origin, direction) + planet_radius * direction.z, c, 0.0, 0.0);
+}
+
 float path_altitude(Path path, float t) {
     float square = path.excess + t * (2.0 * path.along + t);
     return square / (sqrt(max(square, -planet_radius * planet_radius) + planet_radius * planet_radius) + planet_radius);
