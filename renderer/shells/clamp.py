@@ -11,8 +11,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from renderer.core.errors import LimitError
 from renderer.shells.base_mesh import face_vectors
-from renderer.shells.clamp_kernels import overlapping_prisms
+from renderer.shells.clamp_kernels import close_prisms, overlapping
 from renderer.shells.shell import CORNERS, FLAT, SIGNS, sorted_faces
 
 STEP = 0.85
@@ -29,6 +30,9 @@ TOUCH = 1e-9
 
 FACING = 0.05
 """Cosine to the normals of its faces that an offset has at least, where that is possible."""
+
+MOST_PAIRS = 10_000_000
+"""Pairs of prisms that are looked at closely: 80 MB of them."""
 
 TURNS = 60
 """Steps in which such a direction is looked for."""
@@ -85,42 +89,70 @@ class Prisms:
         self._edges = (a, b, SLOPE * np.linalg.norm(vertices[a] - vertices[b], axis=1))
         self._slack = TOUCH * float(np.ptp(vertices, axis=0).max())
 
-    def conflicts(self, offset: np.ndarray, active: np.ndarray | None = None) -> Conflicts:
-        """Conflicts at offsets (V, 3) [m]; where `active` (F,) is given, pairs without any such prism are left out."""
-        positions = np.concatenate([self.vertices, self.vertices + offset])
-        cells = positions[self.corners[:, CORNERS]]
-        a, b, c = (cells[..., k, :] - cells[..., 0, :] for k in (1, 2, 3))
-        determinant = np.einsum("fck,fck->fc", a, np.cross(b, c)) * SIGNS * self._turn[:, None]
-        longest = np.maximum.reduce([np.einsum("fck,fck->fc", edge, edge) for edge in (a, b, c)]) ** 1.5
-        inverted = np.flatnonzero((determinant <= 6 * FLAT * longest).any(axis=1))
-        every = np.ones(len(self.faces), bool) if active is None else active
-        return Conflicts(inverted, overlapping_prisms(positions, self.corners, every, self._slack))
+    def conflicts(self, offset: np.ndarray) -> Conflicts:
+        """Conflicts at offsets (V, 3) [m].
+
+        Raises:
+            LimitError: too many pairs of prisms come near each other.
+        """
+        return Conflicts(self._inverted(offset), self._overlapping(self._close(offset), offset))
 
     def clamp(self, offset: np.ndarray) -> Clamped:
-        """Shorten offsets (V, 3) [m] until no conflict is left but those that no length removes."""
+        """Shorten offsets (V, 3) [m] until no conflict is left but those that no length removes.
+
+        Raises:
+            LimitError: too many pairs of prisms come near each other.
+        """
         share = np.ones(len(self.vertices))
-        wanted = left = self.conflicts(offset)
+        close = self._close(offset)
+        wanted = left = Conflicts(self._inverted(offset), self._overlapping(close, offset))
         if not len(wanted):
-            return Clamped(share, wanted, left, np.empty((0, 2), np.int64))
-        least = self.conflicts(offset * LEAST)
-        own = _common(wanted.overlaps, self.conflicts(offset * TOUCH**0.5).overlaps)
+            return Clamped(share, wanted, left, np.empty((0, 2), np.int32))
+        own = _common(wanted.overlaps, self._overlapping(close, offset * TOUCH**0.5))
+        stuck = self._inverted(offset * LEAST)
+        kept = self._overlapping(close, offset * LEAST)
+        close = _without(close, kept)
         length = np.linalg.norm(offset, axis=1)
+        overlaps = _without(wanted.overlaps, kept)
         while True:
-            bad = np.concatenate([
-                np.setdiff1d(left.inverted, least.inverted), _without(left.overlaps, least.overlaps).ravel()
-            ])
+            now = offset * share[:, None]
+            bad = np.concatenate([np.setdiff1d(self._inverted(now), stuck), overlaps.ravel()])
             concerned = np.unique(self.faces[bad])
             concerned = concerned[share[concerned] > LEAST]
             if not len(concerned):
-                return Clamped(share, wanted, left, own)
+                return Clamped(share, wanted, self.conflicts(now), own)
             before = share
             share = share.copy()
             share[concerned] = np.maximum(share[concerned] * STEP, LEAST)
             share = self._gentle(share, length)
             active = (share != before)[self.faces].any(axis=1)
-            now = self.conflicts(offset * share[:, None], active)
-            kept = left.overlaps[~active[left.overlaps].any(axis=1)]
-            left = Conflicts(now.inverted, np.concatenate([now.overlaps, kept]))
+            again = active[close].any(axis=1)
+            still = overlaps[~active[overlaps].any(axis=1)]
+            overlaps = np.concatenate([still, self._overlapping(close[again], offset * share[:, None])])
+
+    def _positions(self, offset: np.ndarray) -> np.ndarray:
+        return np.concatenate([self.vertices, self.vertices + offset])
+
+    def _inverted(self, offset: np.ndarray) -> np.ndarray:
+        """Triangles whose prism has a cell inside out, or without an inside, (N,)."""
+        cells = self._positions(offset)[self.corners[:, CORNERS]]
+        a, b, c = (cells[..., k, :] - cells[..., 0, :] for k in (1, 2, 3))
+        determinant = np.einsum("fck,fck->fc", a, np.cross(b, c)) * SIGNS * self._turn[:, None]
+        longest = np.maximum.reduce([np.einsum("fck,fck->fc", edge, edge) for edge in (a, b, c)]) ** 1.5
+        return np.flatnonzero((determinant <= 6 * FLAT * longest).any(axis=1))
+
+    def _close(self, offset: np.ndarray) -> np.ndarray:
+        """Pairs (N, 2) of prisms that may overlap at these offsets, or at shorter ones."""
+        pairs: np.ndarray = close_prisms(self._positions(offset), self.corners, self._slack, MOST_PAIRS)
+        if len(pairs) > MOST_PAIRS:
+            raise LimitError(
+                "extrusion.thickness", f"brings more than {MOST_PAIRS:,} pairs of prisms together", "a thinner shell"
+            )
+        return pairs
+
+    def _overlapping(self, pairs: np.ndarray, offset: np.ndarray) -> np.ndarray:
+        found: np.ndarray = pairs[overlapping(self._positions(offset)[self.corners], pairs, self._slack)]
+        return found
 
     def _gentle(self, share: np.ndarray, length: np.ndarray) -> np.ndarray:
         """Shares lowered around what was shortened, so that there the thickness changes by `SLOPE` at most."""
@@ -180,7 +212,7 @@ def facing_directions(direction: np.ndarray, vertices: np.ndarray, faces: np.nda
 
 
 def _key(pairs: np.ndarray) -> np.ndarray:
-    return pairs[:, 0] * np.int64(1 << 32) + pairs[:, 1]
+    return pairs[:, 0].astype(np.int64) * (1 << 32) + pairs[:, 1]
 
 
 def _without(pairs: np.ndarray, others: np.ndarray) -> np.ndarray:

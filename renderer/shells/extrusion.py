@@ -134,6 +134,7 @@ def extrude(base: BaseMesh, extrusion: Extrusion) -> Extruded:
 
     Raises:
         InputError: `extrusion.relief.asset` cannot be had, or used.
+        LimitError: `extrusion.thickness` brings too many prisms together.
     """
     length = lengths(base, extrusion)
     direction, turned = directions(base.vertices, base.faces, extrusion)
@@ -143,7 +144,7 @@ def extrude(base: BaseMesh, extrusion: Extrusion) -> Extruded:
         clamped = prisms.clamp(wanted)
     else:
         found: Conflicts = prisms.conflicts(wanted)
-        clamped = Clamped(np.ones(len(length)), found, found, np.empty((0, 2), np.int64))
+        clamped = Clamped(np.ones(len(length)), found, found, np.empty((0, 2), np.int32))
     return Extruded(wanted * clamped.share[:, None], length, turned, clamped)
 
 
