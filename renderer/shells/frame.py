@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from renderer.core.technique import Arrays
 from renderer.gl.layers import Kind
 from renderer.gl.program import AnyTexture
 from renderer.gl.source import Source
@@ -27,13 +28,15 @@ class Frame:
     """A sample under way.
 
     Attributes:
-        renderer: its stores. state: the document. shell_key, texture_key: of what is drawn.
+        renderer: its stores. state: the document. arrays: of its bakes, by name.
+        shell_key, texture_key: of what is drawn.
         place: where the shell stands. size, offset, sample: of the picture, as `SceneRenderer.prepare` has them.
         textures, values: samplers and uniforms that every pass may read.
     """
 
     renderer: ShellsRenderer
     state: ShellsState
+    arrays: Mapping[str, Arrays]
     shell_key: Any
     texture_key: Any
     place: Placed

@@ -19,7 +19,7 @@ SLOTS = (
         "order",
         "Order",
         "In which order the segments of a ray are put together.",
-        "bool order_walk(Ray ray, int tet, float enter, inout vec4 sum) // true where the opaque surface was met",
+        "the functions of its own stages: order_walk goes through cells, order_gathered says what a drawn cell leaves",
         DEFAULTS["order"],
     ),
     Slot(

@@ -53,7 +53,9 @@ void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy) - ivec2(0, layer_row);
     Ray ray = pixel_ray(gl_FragCoord.xy - vec2(0.0, float(layer_row)));
     float t = plane_distance(ray, tet_texel(tet, owner % 4));
-    if (layer_number > 0 && t <= texelFetch(entry_before, pixel + ivec2(0, before_row), 0).x) discard;
+    // Where the layer before found nothing, nothing is left.
+    vec2 before = layer_number > 0 ? texelFetch(entry_before, pixel + ivec2(0, before_row), 0).xy : vec2(-1.0e30, 0.0);
+    if (before.y < 0.0 || t <= before.x) discard;
     entry = vec2(t, float(tet));
 }"""
 

@@ -20,6 +20,7 @@ from renderer.gl.source import Source
 from renderer.gl.targets import run_fullscreen
 from renderer.shells.entries import Entries
 from renderer.shells.frame import Frame, moved
+from renderer.shells.raster import Rasters
 from renderer.shells.resident import Placed, placed, shell_objects
 from renderer.shells.texture.block import reference_length, texture_of
 from renderer.shells.texture.sources import moment_of
@@ -51,6 +52,7 @@ class ShellsRenderer:
         self._shells: OrderedDict[Hashable, tuple[dict[str, Any], Placed]] = OrderedDict()
         self._textures: OrderedDict[Hashable, Uploaded] = OrderedDict()
         self.entries = Entries(gl)
+        self.rasters = Rasters(gl)
 
     def prepare(
         self, state: ShellsState, baked: Baked, size: tuple[int, int], offset: tuple[float, float], sample: int
@@ -88,7 +90,7 @@ class ShellsRenderer:
             "shell_normal": texture.normal,
             **self._sky_view(state, baked),
         }
-        frame = Frame(self, state, shell_key, texture_key, place, size, offset, sample, textures, values)
+        frame = Frame(self, state, arrays, shell_key, texture_key, place, size, offset, sample, textures, values)
         looked, said = state.shadow.look(frame)
         textures |= looked
         values |= said
@@ -104,6 +106,7 @@ class ShellsRenderer:
         self._sky.release()
         self._suns.release()
         self.entries.release()
+        self.rasters.release()
         while self._shells:
             _free(self._shells.popitem()[1][0])
         while self._textures:

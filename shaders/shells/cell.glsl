@@ -1,0 +1,27 @@
+// A ray's way through a cell whose face was drawn: in by that face's plane, out by the nearest of the other three.
+// Dufort 2005, sections 5.1.1 and 5.2.3; errata 002-8.
+// Symbols: near, far, distances of entry and exit (m); slack, how far beside a face's true edge a fragment may lie (m), since
+// hardware draws with corners rounded to 1/256 of a pixel. Without it, rays along a prism's side would find it empty.
+
+float cell_leave(Ray ray, float near, vec4 plane) {
+    float slack = pixel_width(near) / 128.0;
+    float fall = dot(plane.xyz, ray.direction);
+    float outside = dot(plane.xyz, ray.origin + near * ray.direction) + plane.w;
+    float room = outside > 0.0 ? max(slack - outside, 0.0) : -outside;
+    return fall > 0.0 ? near + room / fall : 1.0e30;
+}
+
+Segment cell_segment(Ray ray, float near, vec4 a, vec4 b, vec4 c, vec4 u, vec4 v, vec4 w) {
+    float far = min(min(cell_leave(ray, near, a), cell_leave(ray, near, b)), cell_leave(ray, near, c));
+    far = far < 1.0e29 ? far : near;
+    vec3 start = vec3(dot(u.xyz, ray.origin) + u.w, dot(v.xyz, ray.origin) + v.w, dot(w.xyz, ray.origin) + w.w);
+    vec3 slope = vec3(dot(u.xyz, ray.direction), dot(v.xyz, ray.direction), dot(w.xyz, ray.direction));
+    return Segment(start + near * slope, start + far * slope, near, far, mat3(u.xyz, v.xyz, w.xyz));
+}
+
+// The same from a face's number, 4 cell + face, and the distance at which a ray meets it.
+Segment cell_numbered(Ray ray, float near, int number) {
+    int tet = number / 4, face = number % 4;
+    return cell_segment(ray, near, tet_texel(tet, (face + 1) % 4), tet_texel(tet, (face + 2) % 4),
+                        tet_texel(tet, (face + 3) % 4), tet_texel(tet, 4), tet_texel(tet, 5), tet_texel(tet, 6));
+}
