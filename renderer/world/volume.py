@@ -59,12 +59,15 @@ class Volume:
         reference_length: metres of path for which the opacity is meant.
         size: extent along x, y, z, metres.
         notes: what was assumed while reading, in words.
+        straight: (Z, Y, X, 3) float32, the colours of a file that did not multiply them by opacity: they are known
+            where there is no matter, too. None where it did.
     """
 
     rgba: np.ndarray
     reference_length: float
     size: tuple[float, float, float]
     notes: tuple[str, ...] = ()
+    straight: np.ndarray | None = None
 
     def extinction(self) -> np.ndarray:
         """Extinction per metre, (Z, Y, X) float32: -ln(1 - opacity) / reference length, opacity at most 1 - 2^-12."""
@@ -72,7 +75,9 @@ class Volume:
         return (-np.log(transmittance) / self.reference_length).astype(np.float32)
 
     def colour(self) -> np.ndarray:
-        """Straight linear colour, (Z, Y, X, 3) float32; black where there is no matter."""
+        """Straight linear colour, (Z, Y, X, 3) float32; where there is no matter, the file's own or black."""
+        if self.straight is not None:
+            return self.straight
         opacity = self.rgba[..., 3:]
         return np.divide(self.rgba[..., :3], opacity, out=np.zeros_like(self.rgba[..., :3]), where=opacity > 0)
 
@@ -106,9 +111,10 @@ def load_volume(path: Path, limits: Limits = DEFAULT_LIMITS, reading: VolumeRead
         bright = int((rgba[..., :3].max(axis=-1) > rgba[..., 3] + 1 / 255).sum())
         if bright:
             notes += (f"{bright:,} voxels have more colour than opacity: they shine, or their alpha is straight",)
-    else:
-        rgba[..., :3] *= rgba[..., 3:]
-    return Volume(rgba, length, size, notes)
+        return Volume(rgba, length, size, notes)
+    straight = rgba[..., :3].copy()
+    rgba[..., :3] *= rgba[..., 3:]
+    return Volume(rgba, length, size, notes, straight)
 
 
 def _shares(rgba: np.ndarray, limits: Limits) -> np.ndarray:

@@ -211,7 +211,7 @@ def _in_front(matter: np.ndarray, axis: int, length: float, ways: tuple[bool, ..
     seen = np.zeros((*extinction.shape, 3), np.float32)
     opacity = np.zeros_like(extinction)
     for high in ways:
-        clear = np.float32(1)
+        clear = np.ones_like(extinction)
         for own, share in parts[::-1] if high else parts:
             passes = np.exp(own[..., 3] * (-np.float32(length) * share))
             taken = np.divide(clear * (1 - passes), own[..., 3], out=np.zeros_like(passes), where=own[..., 3] > 0)

@@ -123,6 +123,46 @@ def test_a_volume_of_ones_own_goes_in(kept: Callable[..., str]) -> None:
     )
 
 
+def heterogeneous() -> tuple[np.ndarray, np.ndarray]:
+    """Extinction (32, 64, 64) per metre and straight colour of soft balls in a box of 1 by 1 by 0.5 m, float64."""
+    rng = np.random.Generator(np.random.PCG64(12345))
+    centre, radius = rng.random((24, 3)) * [1, 1, 0.5], 0.05 + 0.10 * rng.random(24)
+    colour, most = 0.1 + 0.9 * rng.random((24, 3)), 20 + 60 * rng.random(24)
+    z, y, x = np.meshgrid(*[(np.arange(n) + 0.5) / 64 for n in (32, 64, 64)], indexing="ij")
+    off = ((np.stack([x, y, z], -1)[..., None, :] - centre) ** 2).sum(-1) / radius**2
+    parts = most * np.maximum(0, 1 - off) ** 2
+    extinction = parts.sum(-1)
+    there = np.broadcast_to(extinction[..., None] > 0, (32, 64, 64, 3))
+    mean = np.divide(parts @ colour, extinction[..., None], out=np.zeros((32, 64, 64, 3)), where=there)
+    return extinction, mean
+
+
+@pytest.mark.parametrize("alpha", ["straight", "associated"])
+def test_a_thin_volume_keeps_its_precision(kept: Callable[..., str], alpha: str) -> None:
+    """Opacities of a 64th of a metre come back as the extinctions that they were made of, to single precision."""
+    extinction, colour = heterogeneous()
+    opacity = -np.expm1(-extinction / 64)
+    stored = colour if alpha == "straight" else colour * opacity[..., None]
+    rgba = np.concatenate([stored, opacity[..., None]], axis=-1)
+    name = kept(rgba=rgba, alpha=np.array(alpha), reference_length=np.array(1 / 64))
+    texture = texture_of(baked(kind="asset", asset=name), 0.5)
+    there = opacity > 0
+    error = np.abs(texture.extinction() - extinction)
+    assert (error <= 64 * 2.0**-23 + 2e-7 * extinction).all()
+    np.testing.assert_allclose(texture.colour[..., :3][there], colour[there], rtol=5e-7)
+    np.testing.assert_allclose(texture.size, [1, 1, 0.5])
+    assert texture.colour.dtype == np.float32
+
+
+def test_a_straight_volume_keeps_the_colour_of_nothing(kept: Callable[..., str]) -> None:
+    """Straight interpolation mixes it in: black instead would darken every edge."""
+    rgba = np.zeros((2, 2, 2, 4))
+    rgba[..., :3] = 0.7
+    rgba[0, ..., 3] = 0.5
+    block = baked(kind="asset", asset=kept(rgba=rgba, alpha=np.array("straight"), reference_length=np.array(1.0)))
+    np.testing.assert_allclose(block["colour"][..., :3], 0.7, rtol=1e-6)
+
+
 def test_what_a_volume_lacks_is_said_in_words(kept: Callable[..., str]) -> None:
     with pytest.raises(AssetError, match=r"texture\.reading\.reference_length"):
         baked(kind="asset", asset=kept(rgba=np.ones((2, 2, 2, 4))))
