@@ -254,6 +254,24 @@ def run_fullscreen(gl: GL, fragment: str | Source, textures: Mapping[str, AnyTex
         gl.ctx.depth_func = "<"
 
 
+def run_covered(gl: GL, fragment: Source, textures: Mapping[str, AnyTexture], values: Mapping[str, Any]) -> None:
+    """Run a fragment stage once per pixel over which something was drawn into the bound framebuffer's depth.
+
+    What is left out costs nothing even where the CPU draws: blocks of pixels are tested before the stage runs.
+
+    Args:
+        fragment, textures, values: as of `run_fullscreen`.
+    """
+    program = gl.programs.get(_stage("stages/far.vert"), fragment)
+    set_uniforms(program, values)
+    bind_textures(program, textures)
+    gl.ctx.enable_only(moderngl.DEPTH_TEST)
+    gl.ctx.depth_func = ">"
+    gl.programs.draw(program)
+    gl.ctx.depth_func = "<"
+    gl.ctx.enable_only(moderngl.NOTHING)
+
+
 @functools.cache
 def stage(file: str) -> Source:
     """The stage of a file that stands alone."""

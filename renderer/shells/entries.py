@@ -7,19 +7,39 @@ from __future__ import annotations
 
 from collections import OrderedDict
 from collections.abc import Hashable, Mapping
+from dataclasses import dataclass
 from typing import Any
 
 import moderngl
 
 from renderer.gl.context import GL
-from renderer.gl.layers import check_drawable
+from renderer.gl.layers import Kind, check_drawable
 from renderer.gl.meshes import Triangles
 from renderer.gl.program import AnyTexture
 from renderer.gl.source import Source
+from renderer.gl.targets import run_covered, run_fullscreen
 from renderer.shells.world_scale import MOST_LAYERS
 
-BYTES_KEPT = 96 << 20
-"""Of all layers kept, so that a moved sun finds the camera's again."""
+VIEWS_KEPT = 4
+"""Views whose entries are kept, so that a moved sun finds the camera's again."""
+
+
+@dataclass(frozen=True)
+class View:
+    """From where rays come.
+
+    Attributes:
+        key: of camera, sample and shell: equal ones have the same entries. size: (width, height) in pixels.
+        triangles: of the shell's boundary. fragment: writes distance and tetrahedron of what is behind the layer before.
+        textures, values: what it reads, `view_projection` among them.
+    """
+
+    key: Hashable
+    size: tuple[int, int]
+    triangles: Triangles
+    fragment: Source
+    textures: Mapping[str, AnyTexture]
+    values: Mapping[str, Any]
 
 
 class _Sheet:
@@ -30,99 +50,142 @@ class _Sheet:
 
     def __init__(self, gl: GL, width: int, height: int) -> None:
         check_drawable(gl, width, height)
-        self.texture = gl.ctx.texture((width, height), 2, dtype="f4")
-        self.texture.filter = moderngl.NEAREST, moderngl.NEAREST
-        self._depth = gl.ctx.depth_renderbuffer((width, height))
-        self.framebuffer = gl.ctx.framebuffer([self.texture], self._depth)
+        self.texture = _texture(gl, (width, height), (2, "f4"))
+        self.depth = gl.ctx.depth_renderbuffer((width, height))
+        self.framebuffer = gl.ctx.framebuffer([self.texture], self.depth)
 
     def release(self) -> None:
         self.framebuffer.release()
-        self._depth.release()
+        self.depth.release()
         self.texture.release()
 
 
-class _Layers:
-    """Layers of one view."""
+class Layers:
+    """Layers of entries of one view, and what was drawn where rays come in at all."""
 
     def __init__(self, gl: GL, size: tuple[int, int], rows: int) -> None:
-        self.sheets = [_Sheet(gl, size[0], size[1] * rows) for _ in range(2)]
+        self._gl = gl
+        self.size = size
         self.rows = rows
         self.count = 0
-        self.bytes = 2 * size[0] * size[1] * rows * 12
+        self.sheets = [_Sheet(gl, size[0], size[1] * rows) for _ in range(2)]
+        self._shown: dict[tuple[Kind, ...], Hashable] = {}
+        self._drawn: dict[tuple[Kind, ...], tuple[list[moderngl.Texture], moderngl.Framebuffer]] = {}
+
+    def begin(self) -> None:
+        """Forget what was there: another view is peeled."""
+        self.count = 0
+        self._shown = {}
+
+    @property
+    def textures(self) -> dict[str, AnyTexture]:
+        """`entry_even` and `entry_odd`."""
+        return {"entry_even": self.sheets[0].texture, "entry_odd": self.sheets[1].texture}
+
+    @property
+    def values(self) -> dict[str, Any]:
+        """`entry_layers`, how many there are, and `entry_height`."""
+        return {"entry_layers": self.count, "entry_height": self.size[1]}
+
+    def draw(
+        self,
+        kinds: tuple[Kind, ...],
+        nothing: tuple[float, ...],
+        fragment: Source,
+        textures: Mapping[str, AnyTexture],
+        values: Mapping[str, Any],
+        shows: Hashable = None,
+        everywhere: bool = False,
+    ) -> list[moderngl.Texture]:
+        """Run a stage where rays come in, unless what it shows is still there.
+
+        Args:
+            kinds: components and type of each texture. nothing: what the first holds where no ray comes in.
+            fragment, textures, values: of the stage, beside the entries.
+            shows: equal where the stage would draw the same again; None where it never would.
+            everywhere: whether it runs where no ray comes in, too: for a camera within the shell.
+
+        Returns:
+            The textures, whose lowest rows are the picture; they hold until the next drawing of the same kinds.
+        """
+        if kinds not in self._drawn:
+            size = self.sheets[0].texture.size
+            made = [_texture(self._gl, size, kind) for kind in kinds]
+            self._drawn[kinds] = made, self._gl.ctx.framebuffer(made, self.sheets[0].depth)
+        made, framebuffer = self._drawn[kinds]
+        if shows is not None and self._shown.get(kinds) == shows:
+            return made
+        self._shown[kinds] = shows
+        framebuffer.depth_mask = False
+        framebuffer.use()
+        framebuffer.viewport = 0, 0, *self.size
+        framebuffer.clear(*nothing)
+        run = run_fullscreen if everywhere else run_covered
+        run(self._gl, fragment, {**textures, **self.textures}, {**values, **self.values})
+        return made
 
     def release(self) -> None:
+        """Free everything."""
+        for made, framebuffer in self._drawn.values():
+            framebuffer.release()
+            for texture in made:
+                texture.release()
+        self._drawn = {}
         for sheet in self.sheets:
             sheet.release()
 
 
 class Entries:
-    """Layers of entries by what they show, the longest unasked given back first."""
+    """Layers of entries by what they show, the longest unasked drawn over first."""
 
     def __init__(self, gl: GL) -> None:
         self._gl = gl
-        self._held: OrderedDict[Hashable, _Layers] = OrderedDict()
+        self._held: OrderedDict[Hashable, Layers] = OrderedDict()
         self._rows = 1
 
-    def find(
-        self,
-        key: Hashable,
-        size: tuple[int, int],
-        triangles: Triangles,
-        fragment: Source,
-        textures: Mapping[str, AnyTexture],
-        values: Mapping[str, Any],
-    ) -> tuple[dict[str, AnyTexture], dict[str, Any]]:
-        """The layers of a view.
-
-        Args:
-            key: of camera, sample and shell.
-            size: (width, height) in pixels.
-            triangles: of the shell's boundary.
-            fragment: writes distance and tetrahedron, and leaves out what is not behind the layer before.
-            textures, values: what it reads, `view_projection` among them.
-
-        Returns:
-            `entry_even` and `entry_odd`, and `entry_layers`, how many there are, with `entry_height`.
-        """
-        whole = (key, size)
+    def find(self, view: View) -> Layers:
+        """The layers of a view."""
+        whole = (view.key, view.size)
         if whole not in self._held:
-            self._held[whole] = self._peeled(size, triangles, fragment, textures, values)
-            while len(self._held) > 1 and sum(held.bytes for held in self._held.values()) > BYTES_KEPT:
-                self._held.popitem(last=False)[1].release()
+            self._held[whole] = self._peeled(view)
         self._held.move_to_end(whole)
-        layers = self._held[whole]
-        even, odd = (sheet.texture for sheet in layers.sheets)
-        return {"entry_even": even, "entry_odd": odd}, {"entry_layers": layers.count, "entry_height": size[1]}
+        return self._held[whole]
 
-    def _peeled(
-        self,
-        size: tuple[int, int],
-        triangles: Triangles,
-        fragment: Source,
-        textures: Mapping[str, AnyTexture],
-        values: Mapping[str, Any],
-    ) -> _Layers:
+    def release(self) -> None:
+        """Free everything."""
+        while self._held:
+            self._held.popitem()[1].release()
+
+    def _peeled(self, view: View) -> Layers:
         while True:
-            layers = _Layers(self._gl, size, self._rows)
-            if self._peel(layers, size, triangles, fragment, textures, values) or 2 * self._rows >= MOST_LAYERS:
+            layers = self._room(view.size)
+            try:
+                whole = self._peel(layers, view)
+            except BaseException:
+                layers.release()
+                raise
+            if whole or 2 * self._rows >= MOST_LAYERS:
                 return layers
             layers.release()
             self._rows *= 2
 
-    def _peel(
-        self,
-        layers: _Layers,
-        size: tuple[int, int],
-        triangles: Triangles,
-        fragment: Source,
-        textures: Mapping[str, AnyTexture],
-        values: Mapping[str, Any],
-    ) -> bool:
+    def _room(self, size: tuple[int, int]) -> Layers:
+        """Layers of a size: old ones, when enough are kept."""
+        while len(self._held) >= VIEWS_KEPT:
+            spare = self._held.popitem(last=False)[1]
+            if (spare.size, spare.rows) == (size, self._rows):
+                return spare
+            spare.release()
+        return Layers(self._gl, size, self._rows)
+
+    def _peel(self, layers: Layers, view: View) -> bool:
         """Whether all layers found room."""
-        ctx = self._gl.ctx
+        ctx, size = self._gl.ctx, view.size
         ctx.enable_only(moderngl.DEPTH_TEST | moderngl.CULL_FACE)
         query = ctx.query(samples=True)
+        layers.begin()
         for sheet in layers.sheets:
+            sheet.framebuffer.use()
             sheet.framebuffer.viewport = (0, 0, size[0], size[1] * layers.rows)
             sheet.framebuffer.clear(-1.0, -1.0, 0.0, 0.0)
         for layer in range(2 * layers.rows):
@@ -131,17 +194,15 @@ class Entries:
             sheet.framebuffer.viewport = (0, layer // 2 * size[1], *size)
             here = {"layer_number": layer, "layer_row": layer // 2 * size[1], "before_row": (layer - 1) // 2 * size[1]}
             with query:
-                triangles.draw(fragment, {**textures, "entry_before": before.texture}, {**values, **here})
+                view.triangles.draw(view.fragment, {**view.textures, "entry_before": before.texture}, view.values | here)
             if query.samples == 0:
                 break
             layers.count = layer + 1
-        else:
-            ctx.enable_only(moderngl.NOTHING)
-            return False
         ctx.enable_only(moderngl.NOTHING)
-        return True
+        return layers.count < 2 * layers.rows
 
-    def release(self) -> None:
-        """Free everything."""
-        while self._held:
-            self._held.popitem()[1].release()
+
+def _texture(gl: GL, size: tuple[int, int], kind: Kind) -> moderngl.Texture:
+    texture = gl.ctx.texture(size, kind[0], dtype=kind[1])
+    texture.filter = moderngl.NEAREST, moderngl.NEAREST
+    return texture

@@ -12,6 +12,7 @@ from renderer.core.technique import Arrays
 from renderer.gl.layers import Kind
 from renderer.gl.program import AnyTexture
 from renderer.gl.source import Source
+from renderer.shells.entries import Layers, View
 from renderer.shells.program import entry_source, variant_of
 from renderer.shells.resident import Placed
 from renderer.world.camera import Orthographic, camera_uniforms, pose
@@ -21,6 +22,9 @@ from renderer.world.sun import direction
 if TYPE_CHECKING:
     from renderer.shells.renderer import ShellsRenderer
     from renderer.shells.state import ShellsState
+
+FAR = 1.0e30
+"""What a picture from the sun holds where its rays meet nothing, as far away as can be."""
 
 
 @dataclass
@@ -46,7 +50,7 @@ class Frame:
     textures: dict[str, AnyTexture]
     values: dict[str, Any]
 
-    def entries(self) -> tuple[dict[str, AnyTexture], dict[str, Any]]:
+    def entries(self) -> Layers:
         """Where the camera's rays come into the shell, layer by layer."""
         key = (self.shell_key, self.state.camera, self.offset, variant_of(self.state).opaque)
         return self._entries(key, self.state.camera, self.size, self.offset, self.values)
@@ -58,7 +62,7 @@ class Frame:
 
         Args:
             name: of the picture. resolution: its side in texels.
-            kinds: components and type of each of its textures, by name.
+            kinds: components and type of each of its textures, by name; all `FAR` where there is nothing.
             source: makes its fragment stage.
 
         Returns:
@@ -69,28 +73,21 @@ class Frame:
         seen = sun_values(camera, self.place, resolution)
         values = {**self.values, **seen, "picture_size": size, "pixel_offset": (0.5, 0.5)}
         values |= {"pixel_angle": 0.0, "pixel_side": camera.width / resolution}
-        key = (self.shell_key, self.texture_key, self.state.voxels, camera, self.state.filter, variant_of(self.state))
-
-        def draw() -> tuple[Source, dict[str, AnyTexture], dict[str, Any]]:
-            textures, found = self._entries(("sun", key), camera, size, (0.5, 0.5), values)
-            return source(self.state), {**self.textures, **textures}, {**values, **found}
-
-        made = self.renderer.seen_from_sun((name, key), size, tuple(kinds.values()), draw)
+        layers = self._entries(("sun", self.shell_key, camera), camera, size, (0.5, 0.5), values)
+        drawn = (name, self.texture_key, self.state.voxels, self.state.filter, variant_of(self.state))
+        made = layers.draw(
+            tuple(kinds.values()), (FAR,) * 4, source(self.state), self.textures, values, drawn
+        )
         textures = {f"shadow_{part}": texture for part, texture in zip(kinds, made, strict=True)}
         return textures, {key: value for key, value in seen.items() if key.startswith("shadow_")}
 
     def _entries(
         self, key: Any, camera: Any, size: tuple[int, int], offset: tuple[float, float], values: Mapping[str, Any]
-    ) -> tuple[dict[str, AnyTexture], dict[str, Any]]:
+    ) -> Layers:
         matrix = view_projection(camera, size, offset, self.place.centre, reach(camera, self.place))
-        return self.renderer.entries.find(
-            key,
-            size,
-            self.renderer.triangles(self.shell_key),
-            entry_source(variant_of(self.state)),
-            self.textures,
-            {**values, "view_projection": matrix},
-        )
+        triangles, fragment = self.renderer.triangles(self.shell_key), entry_source(variant_of(self.state))
+        view = View(key, size, triangles, fragment, self.textures, {**values, "view_projection": matrix})
+        return self.renderer.entries.find(view)
 
 
 def reach(camera: Any, place: Placed) -> tuple[float, float]:

@@ -59,18 +59,27 @@ void main() {
     entry = vec2(t, float(tet));
 }"""
 
-WALK_BODY = """layout(location = 0) out vec4 radiance;
+WALK_BODY = """layout(location = 0) out vec4 gathered;
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     Ray ray = pixel_ray(gl_FragCoord.xy);
     vec4 sum = vec4(0.0);
-    bool met = start_tet >= 0 && order_walk(ray, start_tet, 0.0, sum);
+    bool met = false;
     for (int layer = 0; layer < entry_layers && !met && sum.a < OPAQUE; layer++) {
         vec2 entry = entry_of(pixel, layer);
         if (entry.y < 0.0) break;
         met = order_walk(ray, int(entry.y), max(entry.x, 0.0), sum);
     }
-    radiance = before_sky(sum.rgb, sum.a, ray.direction);
+    gathered = sum;
+}"""
+
+INSIDE_BODY = WALK_BODY.replace("false", "order_walk(ray, start_tet, 0.0, sum)")
+
+COMPOSE_BODY = """uniform sampler2D gathered;
+layout(location = 0) out vec4 radiance;
+void main() {
+    vec4 sum = texelFetch(gathered, ivec2(gl_FragCoord.xy), 0);
+    radiance = before_sky(sum.rgb, sum.a, pixel_ray(gl_FragCoord.xy).direction);
 }"""
 
 FIRST = ("lib/pixel.glsl", "lib/camera.glsl", "lib/sky.glsl", "lib/backdrop.glsl", "shells/tetrahedra.glsl",
@@ -111,9 +120,15 @@ def entry_source(variant: Variant) -> Source:
     return composed((), variant, (), ENTRY_BODY, ENTRY_DECLARATIONS)
 
 
-def walk_source(state: ShellsState) -> Source:
-    """The fragment stage that walks each ray through the shell, and lays it before the background."""
-    return composed(chosen(state, LIT_SLOTS), variant_of(state), ("shells/entry.glsl",), WALK_BODY)
+def walk_source(state: ShellsState, inside: bool) -> Source:
+    """The fragment stage that walks each ray through the shell, from the camera's own cell where it is inside of one."""
+    body = INSIDE_BODY if inside else WALK_BODY
+    return composed(chosen(state, LIT_SLOTS), variant_of(state), ("shells/entry.glsl",), body)
+
+
+def compose_source(state: ShellsState) -> Source:
+    """The fragment stage that lays what was gathered before the background."""
+    return composed((), variant_of(state), (), COMPOSE_BODY)
 
 
 def chosen(state: ShellsState, slots: tuple[str, ...]) -> Chosen:

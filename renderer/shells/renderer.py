@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import OrderedDict
-from collections.abc import Callable, Hashable, Mapping
+from collections.abc import Hashable, Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -12,7 +12,6 @@ import numpy as np
 from renderer.core.params import uniforms
 from renderer.core.technique import Arrays, BakedArrays
 from renderer.gl.context import GL
-from renderer.gl.layers import Kind, Layers
 from renderer.gl.meshes import Triangles
 from renderer.gl.program import AnyTexture
 from renderer.gl.resident import Resident
@@ -38,9 +37,6 @@ Prepared = tuple[Source, dict[str, AnyTexture], dict[str, Any]]
 SHELLS_KEPT, TEXTURES_KEPT = 4, 4
 """Shells and textures that stay on the GPU."""
 
-SUNS_KEPT = 64 << 20
-"""Bytes kept of what was seen from suns."""
-
 
 class ShellsRenderer:
     """Shells and textures on the GPU, and the frames drawn with them; one serves every view of the process."""
@@ -48,7 +44,6 @@ class ShellsRenderer:
     def __init__(self, gl: GL) -> None:
         self._gl = gl
         self._sky = Resident(gl, 8)
-        self._suns = Resident(gl, 16, SUNS_KEPT)
         self._shells: OrderedDict[Hashable, tuple[dict[str, Any], Placed]] = OrderedDict()
         self._textures: OrderedDict[Hashable, Uploaded] = OrderedDict()
         self.entries = Entries(gl)
@@ -104,7 +99,6 @@ class ShellsRenderer:
     def release(self) -> None:
         """Free everything."""
         self._sky.release()
-        self._suns.release()
         self.entries.release()
         self.rasters.release()
         while self._shells:
@@ -116,20 +110,6 @@ class ShellsRenderer:
         """Those of a shell's boundary."""
         found: Triangles = self._shells[shell_key][0]["entries"]
         return found
-
-    def seen_from_sun(
-        self, key: Hashable, size: tuple[int, int], kinds: tuple[Kind, ...], draw: Callable[[], Prepared]
-    ) -> list[AnyTexture]:
-        """Textures drawn from the sun by a full-screen stage, unless they are still there."""
-
-        def make() -> dict[str, Layers]:
-            prepared = draw()
-            layers = Layers(self._gl, *size, kinds)
-            layers.use()
-            run_fullscreen(self._gl, *prepared)
-            return {"layers": layers}
-
-        return list(self._suns.get((key, size), make)["layers"].textures)  # type: ignore[union-attr]
 
     def _shell(self, key: Hashable, shell: Arrays, state: ShellsState) -> tuple[dict[str, Any], Placed]:
         if key not in self._shells:

@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 from renderer.core.params import param
-from renderer.shells.program import walk_source
+from renderer.gl.layers import Kind
+from renderer.shells.program import compose_source, walk_source
 from renderer.shells.technique import OrderTechnique
 
 if TYPE_CHECKING:
@@ -26,6 +27,9 @@ class Walk(OrderTechnique):
     )
 
     def picture(self, frame: Frame) -> tuple[Any, dict[str, AnyTexture], dict[str, Any]]:
-        """Find where rays come in; the walk itself is the picture's one pass."""
-        textures, values = frame.entries()
-        return walk_source(frame.state), {**frame.textures, **textures}, {**frame.values, **values}
+        """Find where rays come in, and walk; what is gathered goes before the background."""
+        inside = frame.values["start_tet"] >= 0
+        source, layers = walk_source(frame.state, inside), frame.entries()
+        kinds: tuple[Kind, ...] = ((4, frame.state.accumulation.dtype),)
+        gathered = layers.draw(kinds, (0.0,) * 4, source, frame.textures, frame.values, everywhere=inside)[0]
+        return compose_source(frame.state), {**frame.textures, "gathered": gathered}, frame.values

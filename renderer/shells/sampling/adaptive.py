@@ -9,14 +9,17 @@ from renderer.shells.technique import ShellsTechnique
 
 
 class Adaptive(ShellsTechnique):
-    """Steps of a voxel of the level that is read; empty voxels are passed without being lit."""
+    """Steps of a voxel of the level that is read."""
 
     title: ClassVar[str] = "Adaptive"
-    caption: ClassVar[str] = "Steps as long as a voxel of the level that is read; empty voxels are passed unlit."
+    caption: ClassVar[str] = "Steps as long as a voxel of the level that is read, lit once a segment."
     paper: ClassVar[str] = "Levoy 1990, section 3"
 
     kind: Literal["adaptive"] = "adaptive"
     rate: float = param(1.0, label="Rate", help="Samples a voxel.", ge=0.05, le=64)
+    lit: Literal["segment", "sample"] = param(
+        "segment", label="Lit", help="Whether light is looked for once a segment, or at each sample.", cost="build"
+    )
     most: int = param(
         256, label="Most samples", help="Of one segment.", cost="build", unit="count", ge=1, le=4096
     )
