@@ -126,5 +126,6 @@ def sun_values(camera: Orthographic, place: Placed, resolution: int) -> dict[str
         "shadow_down": tuple(down),
         "shadow_along": values["camera_corner"],
         "shadow_texel": texel,
+        "shadow_side": float(resolution),
         "start_tet": -1,
     }

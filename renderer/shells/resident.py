@@ -28,8 +28,9 @@ class Placed:
 
 def placed(shell: Arrays) -> Placed:
     """The sphere round a shell."""
-    low, high = shell["positions"].min(axis=0), shell["positions"].max(axis=0)
-    return Placed((low + high) / 2, float(np.linalg.norm(high - low)) / 2)
+    positions = shell["positions"]
+    centre = (positions.min(axis=0) + positions.max(axis=0)) / 2
+    return Placed(centre, float(np.sqrt(((positions - centre) ** 2).sum(axis=1).max())))
 
 
 def tet_texels(shell: Arrays, centre: np.ndarray) -> np.ndarray:

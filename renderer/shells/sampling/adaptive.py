@@ -12,13 +12,13 @@ class Adaptive(ShellsTechnique):
     """Steps of a voxel of the level that is read."""
 
     title: ClassVar[str] = "Adaptive"
-    caption: ClassVar[str] = "Steps as long as a voxel of the level that is read, lit once a segment."
+    caption: ClassVar[str] = "Steps as long as a voxel of the level that is read, lit where they hide much."
     paper: ClassVar[str] = "Levoy 1990, section 3"
 
     kind: Literal["adaptive"] = "adaptive"
     rate: float = param(1.0, label="Rate", help="Samples a voxel.", ge=0.05, le=64)
-    lit: Literal["segment", "sample"] = param(
-        "segment", label="Lit", help="Whether light is looked for once a segment, or at each sample.", cost="build"
+    lit: float = param(
+        0.3, label="Lit", help="Opacity of the samples that share one look at the light.", unit="ratio", ge=0, le=1
     )
     most: int = param(
         256, label="Most samples", help="Of one segment.", cost="build", unit="count", ge=1, le=4096

@@ -47,6 +47,7 @@ class DeepShadowMap(ShadowTechnique):
         "uniform vec3 shadow_down;",
         "uniform vec3 shadow_along;   // unit vector away from the sun",
         "uniform float shadow_texel;  // m",
+        "uniform float shadow_side;   // texels",
     )
 
     kind: Literal["deep_shadow_map"] = "deep_shadow_map"

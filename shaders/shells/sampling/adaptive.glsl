@@ -2,8 +2,8 @@
 // After Levoy 1990, "Efficient ray tracing of volume data"; errata 002-1, 002-4, 002-5.
 //
 // Symbols: rate, samples a voxel; lambda in [0, 1] along the segment; alpha = 1 - exp(-extinction l), l the step's length (m).
-// Deviations: with SAMPLING_LIT_SEGMENT light is looked for once a segment, by the normal of what is seen most of, where all that is
-// seen has its middle; colours are each sample's own.
+// Deviations: light is looked for once for samples that together hide `lit` of what is behind them, or that end a segment: by the
+// normal of the one that is seen most, where all of them have their middle. Colours are each sample's own.
 
 void sampling_segment(Ray ray, Segment segment, inout vec4 sum) {
     float level = filter_level(segment.near, segment.gradients);
@@ -11,32 +11,23 @@ void sampling_segment(Ray ray, Segment segment, inout vec4 sum) {
     float share = 1.0 / clamp(ceil(length(voxels) * sampling_rate), 1.0, float(SAMPLING_MOST));
     float length_of_step = (segment.far - segment.near) * share;
     float lambda = 0.5 * share;
-#if SAMPLING_LIT == SAMPLING_LIT_SEGMENT
-    vec4 part = vec4(0.0);
-    float middle = 0.0, most = 0.0, place = lambda, extinction = 0.0;
     do {
-        Matter matter = matter_at(mix(segment.from, segment.to, lambda), level);
-        float weight = (1.0 - part.a) * (1.0 - exp(-matter.extinction * length_of_step));
-        part += weight * vec4(matter.colour, 1.0);
-        middle += weight * lambda;
-        bool more = weight > most;
-        most = more ? weight : most;
-        place = more ? lambda : place;
-        extinction = more ? matter.extinction : extinction;
-        lambda += share;
-    } while (lambda < 1.0 && part.a < OPAQUE);
-    float distance = mix(segment.near, segment.far, middle / max(part.a, 1.0e-6));
-    Matter seen = Matter(part.rgb, extinction);
-    vec3 source = light_source(ray, distance, mix(segment.from, segment.to, place), level, seen, segment.gradients);
-    sum += (1.0 - sum.a) * vec4(source, part.a);
-#else
-    do {
-        float distance = mix(segment.near, segment.far, lambda);
-        vec3 place = mix(segment.from, segment.to, lambda);
-        Matter matter = matter_at(place, level);
-        vec3 source = light_source(ray, distance, place, level, matter, segment.gradients);
-        sum += (1.0 - sum.a) * (1.0 - exp(-matter.extinction * length_of_step)) * vec4(source, 1.0);
-        lambda += share;
+        vec4 part = vec4(0.0);
+        float middle = 0.0, most = 0.0, place = lambda, extinction = 0.0;
+        do {
+            Matter matter = matter_at(mix(segment.from, segment.to, lambda), level);
+            float weight = (1.0 - part.a) * (1.0 - exp(-matter.extinction * length_of_step));
+            part += weight * vec4(matter.colour, 1.0);
+            middle += weight * lambda;
+            bool more = weight > most;
+            most = more ? weight : most;
+            place = more ? lambda : place;
+            extinction = more ? matter.extinction : extinction;
+            lambda += share;
+        } while (lambda < 1.0 && part.a < sampling_lit);
+        float distance = mix(segment.near, segment.far, middle / max(part.a, 1.0e-6));
+        Matter seen = Matter(part.rgb, extinction);
+        vec3 source = light_source(ray, distance, mix(segment.from, segment.to, place), level, seen, segment.gradients);
+        sum += (1.0 - sum.a) * vec4(source, part.a);
     } while (lambda < 1.0 && sum.a < OPAQUE);
-#endif
 }

@@ -8,9 +8,8 @@ float shadow_visibility(vec3 point) {
     vec3 from = point - shadow_origin;
     float noise = fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715))));
     vec2 jitter = fract(vec2(noise, 7.0 * noise) + sample_shift * vec2(0.7548776662, 0.5698402910)) - 0.5;
-    ivec2 size = textureSize(shadow_nodes, 0);
     vec2 place = vec2(dot(from, shadow_across), dot(from, shadow_down)) + shadow_softness * jitter;
-    ivec2 texel = clamp(ivec2(place.x, float(size.y) - place.y), ivec2(0), size - 1);
+    ivec2 texel = clamp(ivec2(place.x, shadow_side - place.y), ivec2(0), ivec2(shadow_side) - 1);
     float t = dot(from, shadow_along) - shadow_bias * shadow_texel;
     vec4 nodes = texelFetch(shadow_nodes, texel, 0);
     vec2 rest = texelFetch(shadow_rest, texel, 0).xy;
