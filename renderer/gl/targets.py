@@ -262,7 +262,7 @@ def run_covered(gl: GL, fragment: Source, textures: Mapping[str, AnyTexture], va
     Args:
         fragment, textures, values: as of `run_fullscreen`.
     """
-    program = gl.programs.get(_stage("stages/far.vert"), fragment)
+    program = gl.programs.get(stage("stages/far.vert"), fragment)
     set_uniforms(program, values)
     bind_textures(program, textures)
     gl.ctx.enable_only(moderngl.DEPTH_TEST)

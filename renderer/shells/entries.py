@@ -30,7 +30,8 @@ class View:
 
     Attributes:
         key: of camera, sample and shell: equal ones have the same entries. size: (width, height) in pixels.
-        triangles: of the shell's boundary. fragment: writes distance and tetrahedron of what is behind the layer before.
+        triangles: of the shell's boundary.
+        fragment: writes distance and tetrahedron of what is behind the layer before.
         textures, values: what it reads, `view_projection` among them.
     """
 
@@ -90,7 +91,7 @@ class Layers:
     def draw(
         self,
         kinds: tuple[Kind, ...],
-        nothing: tuple[float, ...],
+        nothing: float,
         fragment: Source,
         textures: Mapping[str, AnyTexture],
         values: Mapping[str, Any],
@@ -100,7 +101,7 @@ class Layers:
         """Run a stage where rays come in, unless what it shows is still there.
 
         Args:
-            kinds: components and type of each texture. nothing: what the first holds where no ray comes in.
+            kinds: components and type of each texture. nothing: what they hold where no ray comes in.
             fragment, textures, values: of the stage, beside the entries.
             shows: equal where the stage would draw the same again; None where it never would.
             everywhere: whether it runs where no ray comes in, too: for a camera within the shell.
@@ -119,7 +120,7 @@ class Layers:
         framebuffer.depth_mask = False
         framebuffer.use()
         framebuffer.viewport = 0, 0, *self.size
-        framebuffer.clear(*nothing)
+        framebuffer.clear(nothing, nothing, nothing, nothing)
         run = run_fullscreen if everywhere else run_covered
         run(self._gl, fragment, {**textures, **self.textures}, {**values, **self.values})
         return made
@@ -193,8 +194,9 @@ class Entries:
             sheet.framebuffer.use()
             sheet.framebuffer.viewport = (0, layer // 2 * size[1], *size)
             here = {"layer_number": layer, "layer_row": layer // 2 * size[1], "before_row": (layer - 1) // 2 * size[1]}
+            textures, values = {**view.textures, "entry_before": before.texture}, {**view.values, **here}
             with query:
-                view.triangles.draw(view.fragment, {**view.textures, "entry_before": before.texture}, view.values | here)
+                view.triangles.draw(view.fragment, textures, values)
             if query.samples == 0:
                 break
             layers.count = layer + 1

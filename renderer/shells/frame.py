@@ -76,9 +76,9 @@ class Frame:
         layers = self._entries(("sun", self.shell_key, camera), camera, size, (0.5, 0.5), values)
         drawn = (name, self.texture_key, self.state.voxels, self.state.filter, variant_of(self.state))
         made = layers.draw(
-            tuple(kinds.values()), (FAR,) * 4, source(self.state), self.textures, values, drawn
+            tuple(kinds.values()), FAR, source(self.state), self.textures, values, drawn
         )
-        textures = {f"shadow_{part}": texture for part, texture in zip(kinds, made, strict=True)}
+        textures: dict[str, AnyTexture] = {f"shadow_{part}": texture for part, texture in zip(kinds, made, strict=True)}
         return textures, {key: value for key, value in seen.items() if key.startswith("shadow_")}
 
     def _entries(

@@ -121,7 +121,7 @@ def entry_source(variant: Variant) -> Source:
 
 
 def walk_source(state: ShellsState, inside: bool) -> Source:
-    """The fragment stage that walks each ray through the shell, from the camera's own cell where it is inside of one."""
+    """The fragment stage that walks each ray through the shell, from the camera's cell where it is inside of one."""
     body = INSIDE_BODY if inside else WALK_BODY
     return composed(chosen(state, LIT_SLOTS), variant_of(state), ("shells/entry.glsl",), body)
 

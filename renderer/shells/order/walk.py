@@ -31,5 +31,5 @@ class Walk(OrderTechnique):
         inside = frame.values["start_tet"] >= 0
         source, layers = walk_source(frame.state, inside), frame.entries()
         kinds: tuple[Kind, ...] = ((4, frame.state.accumulation.dtype),)
-        gathered = layers.draw(kinds, (0.0,) * 4, source, frame.textures, frame.values, everywhere=inside)[0]
+        gathered = layers.draw(kinds, 0.0, source, frame.textures, frame.values, everywhere=inside)[0]
         return compose_source(frame.state), {**frame.textures, "gathered": gathered}, frame.values
