@@ -6,6 +6,7 @@ cloud height; the Earth is flat over the square.
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -54,8 +55,12 @@ def reach(state: CloudsState) -> float:
 
     A far camera has a wider square of as many cells (Belcour 2009, section 5.2.3: several resolutions by distance).
     """
-    base = state.layer.base
-    off = float(np.linalg.norm(pose(state.camera).eye - np.array((0.0, 0.0, base))))
+    return _reach(state.camera, state.layer.base)
+
+
+@functools.lru_cache(maxsize=16)
+def _reach(camera: Any, base: float) -> float:
+    off = float(np.linalg.norm(pose(camera).eye - np.array((0.0, 0.0, base))))
     return base * float(np.clip(2.0 ** np.floor(np.log2(max(off / (16 * base), 1.0))), 1.0, WIDEST))
 
 

@@ -78,6 +78,7 @@ def variant_of(state: CloudsState, values: Mapping[str, Any]) -> Variant:
         table=table,
         side=(-1 if altitude < state.layer.base else int(altitude > top)) if table else 0,
         twilight=not (table and high and altitude < AIR_TOP / 2),
+        land=values["land_top"] > 0,
     )
 
 

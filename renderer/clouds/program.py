@@ -126,12 +126,14 @@ class Variant:
         table: whether all rays start at the camera, so that the air's table serves them.
         side: of the layer where that is: -1 below its base, 1 above all of it, 0 inside or anywhere.
         twilight: whether the sun may stand below the horizon of what is seen.
+        land: whether any stands on the sphere.
     """
 
     sky: bool
     table: bool
     side: int
     twilight: bool
+    land: bool
 
 
 def scout_source(variant: Variant) -> Source:
@@ -171,6 +173,7 @@ def composed(
         "AIR_TABLE": int(variant.table),
         "CAMERA_SIDE": variant.side,
         "TWILIGHT": int(variant.twilight),
+        "LAND": int(variant.land),
         **dict.fromkeys(extra, 1),
     }
     for slot, technique, build in chosen:

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import functools
+from collections.abc import Callable, Hashable, Mapping
+from concurrent.futures import ThreadPoolExecutor
 from typing import TYPE_CHECKING, Any
 
 import moderngl
+import numpy as np
 
 from renderer.clouds.frame_passes import Pass, layer_source, lit_passes
 from renderer.clouds.frame_values import (
@@ -51,6 +54,9 @@ if TYPE_CHECKING:
     from renderer.clouds.state import CloudsState
 
 Baked = Mapping[str, BakedArrays]
+Awaited = tuple[Hashable, str, Callable[[], dict[str, np.ndarray]]]
+"""A key of what a technique's frame needs, the slot, and how to have it."""
+
 Prepared = tuple[list[Pass], dict[str, AnyTexture], dict[str, Any]]
 
 GROUND_LAYERS: dict[str, Kind] = {"traced_ground": (4, "f4"), "traced_albedo": (4, "f2")}
@@ -90,6 +96,7 @@ class CloudsRenderer:
         self._grounds = LayerStore(gl, tuple(GROUND_LAYERS.values()), GROUNDS_KEPT)
         self._stretches = LayerStore(gl, tuple(LAYER_LAYERS.values()), STRETCHES_KEPT, depth=True)
         self._airs = LayerStore(gl, ((4, "f4"),), AIRS_KEPT)
+        self._beside = ThreadPoolExecutor(1, "clouds")
 
     def prepare(
         self, state: CloudsState, baked: Baked, size: tuple[int, int], offset: tuple[float, float], sample: int
@@ -103,18 +110,32 @@ class CloudsRenderer:
             sample: its number.
         """
         arrays = {name: entry.arrays for name, entry in baked.items()}
+        keys = tuple(sorted(entry.key for entry in baked.values()))
+        awaited = self._begun(state, arrays, keys)
         values = world_values(state, arrays) | camera_uniforms(state.camera, *size)
         values |= air_frame(values["camera_origin"], state.planet.radius, values["sun_direction"])
         values |= {"camera_excess": excess(values["camera_origin"], state.planet.radius)}
         values |= {"picture_size": size, "pixel_offset": offset, "pixel_angle": pixel_angle(state, size)}
-        textures = self._textures(state, baked, arrays)
+        textures = self._textures(state, baked, arrays, keys)
         for slot, technique in state.techniques().items():
             values |= uniforms(technique, slot) | technique.constants(state, arrays)
         variant = variant_of(state, values)
         textures |= self._air_tables(state, baked, variant, values, textures)
         textures |= self._traced(state, baked, (size, offset), variant, values, textures)
+        for key, slot, made in awaited:
+            textures |= self._moment.get(key, lambda slot=slot, made=made: technique_textures(self._gl, slot, made()))  # type: ignore[misc, arg-type]
         disc = variant.sky and shows_disc(values)
         return lit_passes(state, variant, disc), textures, values
+
+    def _begun(self, state: CloudsState, arrays: Mapping[str, Arrays], keys: tuple[str, ...]) -> list[Awaited]:
+        """What this sun and moment ask of the techniques, begun beside this thread unless it is still there."""
+        found: list[Awaited] = []
+        for slot, technique in state.techniques().items():
+            key = (slot, technique.frame_key(state), keys)
+            if key[1]:
+                make = functools.partial(technique.frame_textures, state, arrays)
+                found.append((key, slot, make if key in self._moment else self._beside.submit(make).result))
+        return found
 
     def _traced(
         self,
@@ -187,6 +208,7 @@ class CloudsRenderer:
 
     def release(self) -> None:
         """Free every texture."""
+        self._beside.shutdown()
         self._baked.release()
         self._moment.release()
         self._scouts.release()
@@ -194,7 +216,9 @@ class CloudsRenderer:
         self._stretches.release()
         self._airs.release()
 
-    def _textures(self, state: CloudsState, baked: Baked, arrays: Mapping[str, Arrays]) -> dict[str, AnyTexture]:
+    def _textures(
+        self, state: CloudsState, baked: Baked, arrays: Mapping[str, Arrays], keys: tuple[str, ...]
+    ) -> dict[str, AnyTexture]:
         world = tuple(baked[name].key for name in ("air", "sky", "globe", "land", "fields"))
         held = dict(self._baked.get(world, lambda: world_textures(self._gl, arrays)))
         place = (state.planet.latitude, state.planet.longitude, state.planet.radius)
@@ -202,7 +226,7 @@ class CloudsRenderer:
             ("weather", baked["fields"].key, place, state.layer.ends, state.layer.ends_azimuth),
             lambda: weather_texture(self._gl, arrays["fields"], state.planet, state.layer),
         )
-        azimuth = angles(state.sun)[0]
+        azimuth = angles(state.sun)[0] if arrays["land"]["top"] > 0 else 0.0
         tops = tuple(state.layer.base + share * state.layer.thickness for share in LIT_TOPS)
         held |= self._moment.get(
             ("horizon", baked["land"].key, azimuth, tops),
@@ -213,16 +237,10 @@ class CloudsRenderer:
             ("map", baked["fields"].key, state.clouds, state.time if moves(state) else 0.0),
             lambda: moment_map(self._gl, state.clouds, arrays["fields"], side, state.time),
         )
-        keys = tuple(sorted(entry.key for entry in baked.values()))
         for slot, technique in state.techniques().items():
 
             def kept(slot: str = slot, technique: Any = technique) -> dict[str, AnyTexture]:
                 return technique_textures(self._gl, slot, technique.kept_textures(state, arrays))
 
-            def framed(slot: str = slot, technique: Any = technique) -> dict[str, AnyTexture]:
-                return technique_textures(self._gl, slot, technique.frame_textures(state, arrays))
-
             held |= self._baked.get((slot, technique, keys), kept)
-            if technique.frame_key(state):
-                held |= self._moment.get((slot, technique.frame_key(state), keys), framed)
         return held  # type: ignore[return-value]

@@ -6,6 +6,7 @@ import hashlib
 import re
 from collections import OrderedDict
 from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
 from typing import Any, cast
 
 import moderngl
@@ -147,15 +148,38 @@ def set_uniforms(program: moderngl.Program, values: Mapping[str, Any]) -> None:
     Raises:
         UmbrageError: a value of the wrong size, naming the uniform.
     """
-    held: dict[str, bytes] = program.extra if isinstance(program.extra, dict) else {}
-    program.extra = held  # what the program holds already: a frame changes few of its uniforms
-    for name, value in values.items():
-        member = program.get(name, None)
-        if isinstance(member, moderngl.Uniform):
-            data = _uniform_bytes(name, member, value)
-            if held.get(name) != data:
-                member.write(data)
-                held[name] = data
+    # What the program has and what it holds already: a frame changes few of its uniforms.
+    kept: _Kept = program.extra if isinstance(program.extra, _Kept) else _Kept.of(program)
+    program.extra = kept
+    for name, member in kept.members.items():
+        if name not in values:
+            continue
+        value = values[name]
+        plain = isinstance(value, (int, float, tuple))
+        if plain and name in kept.given and kept.given[name] == value:
+            continue
+        data = _uniform_bytes(name, member, value)
+        if kept.bytes.get(name) != data:
+            member.write(data)
+            kept.bytes[name] = data
+        if plain:
+            kept.given[name] = value
+        else:
+            kept.given.pop(name, None)
+
+
+@dataclass(frozen=True)
+class _Kept:
+    """A program's uniforms by name, the bytes that they hold, and the plain values that these were made of."""
+
+    members: dict[str, moderngl.Uniform]
+    bytes: dict[str, bytes]
+    given: dict[str, Any]
+
+    @staticmethod
+    def of(program: moderngl.Program) -> _Kept:
+        found = {name: member for name in program if isinstance(member := program[name], moderngl.Uniform)}
+        return _Kept(found, {}, {})
 
 
 def _uniform_bytes(name: str, member: moderngl.Uniform, value: Any) -> bytes:

@@ -26,7 +26,11 @@ class Resident:
         self._limit = limit
         self._bytes_kept = bytes_kept
         self._held: OrderedDict[Hashable, Mapping[str, Held]] = OrderedDict()
+        self._sizes: dict[Hashable, int] = {}
         gl.at_close(self)
+
+    def __contains__(self, key: Hashable) -> bool:
+        return key in self._held
 
     def get(self, key: Hashable, make: Callable[[], Mapping[str, Held]]) -> Mapping[str, Held]:
         """The objects of `key`, made on first use."""
@@ -35,19 +39,21 @@ class Resident:
             return self._held[key]
         made = make()
         self._held[key] = made
+        self._sizes[key] = sum(bytes_of(held) for held in made.values())
         while len(self._held) > max(self._limit, 1) or (len(self._held) > 1 and self._bytes() > self._bytes_kept):
-            self._free(self._held.popitem(last=False)[1])
+            self._free(*self._held.popitem(last=False))
         return made
 
     def release(self) -> None:
         """Free everything."""
         while self._held:
-            self._free(self._held.popitem()[1])
+            self._free(*self._held.popitem())
 
     def _bytes(self) -> int:
-        return sum(bytes_of(held) for objects in self._held.values() for held in objects.values())
+        return sum(self._sizes.values())
 
-    def _free(self, objects: Mapping[str, Held]) -> None:
+    def _free(self, key: Hashable, objects: Mapping[str, Held]) -> None:
+        del self._sizes[key]
         for held in objects.values():
             held.release()
 

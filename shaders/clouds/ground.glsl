@@ -22,7 +22,10 @@ float land_height(vec2 place) {
 // which it meets no land.
 float ground_distance(Path path, vec3 origin, vec3 direction, float footprint, float first) {
     float end = sphere_distance(path);
-    if (land_top <= 0.0 || first >= end) return end;
+#if LAND == 0
+    return end;
+#endif
+    if (first >= end) return end;
     // The stretch of the ray between the land's top and the sphere, over the land's square.
     vec2 roof = path_distances(path, land_top);
     float half_side = 0.5 * land_cell * float(textureSize(land_heights, 0).x);
@@ -58,6 +61,9 @@ float ground_distance(Path path, vec3 origin, vec3 direction, float footprint, f
 
 // Unit normal of the land at a place, in the site's axes turned to the point's own up.
 vec3 land_normal(vec2 place, vec3 up) {
+#if LAND == 0
+    return up;
+#endif
     vec2 node = vec2(land_cell, 0.0);
     vec2 rise = vec2(land_height(place + node.xy) - land_height(place - node.xy),
                      land_height(place + node.yx) - land_height(place - node.yx)) / (2.0 * land_cell);
@@ -89,6 +95,9 @@ vec3 land_albedo(vec3 albedo, vec3 normal, vec3 up, vec2 place, float footprint)
 
 // Shares of the sun's disc and of an even sky that the land leaves to its nodes; mu: the sun's zenith cosine.
 vec2 land_sees(vec2 place, float mu) {
+#if LAND == 0
+    return vec2(1.0);
+#endif
     vec2 found = textureLod(land_horizon, land_place(place), 0.0).rg;
     float horizon = found.r;
     vec2 inside = step(abs(land_place(place) - 0.5), vec2(0.5));
@@ -100,6 +109,9 @@ vec2 land_sees(vec2 place, float mu) {
 // Share of the sun's disc that summits leave to the upper side of a layer of some thickness (m) over a place.
 const float LAYER_LOW = 0.5, LAYER_HIGH = 2.0;
 float layer_sees_sun(vec2 place, float thickness, float mu) {
+#if LAND == 0
+    return 1.0;
+#endif
     vec2 found = textureLod(land_horizon, land_place(place), 0.0).ba;
     float share = thickness / max(layer_thickness, 1.0e-3);
     float horizon = mix(found.x, found.y, clamp((share - LAYER_LOW) / (LAYER_HIGH - LAYER_LOW), 0.0, 1.0));
@@ -111,6 +123,9 @@ float layer_sees_sun(vec2 place, float thickness, float mu) {
 // Before what distance the rays of a pixel's block and of those around it meet no land, m: a little nearer than their nearest
 // ray did. Ridges narrower than a block, against the sky, may lose a pixel.
 float scouted(ivec2 pixel) {
+#if LAND == 0
+    return 0.0;
+#endif
     ivec2 block = pixel / LAND_BLOCK, last = textureSize(traced_scout, 0) - 1;
     float nearest = NEVER;
     for (int k = 0; k < 9; k++)
