@@ -9,9 +9,15 @@ import numpy as np
 from pydantic import Field
 
 from renderer.core.params import Model, param
+from renderer.core.technique import Arrays
 from renderer.shells.base_mesh import BaseMesh, vertex_normals
-from renderer.shells.extrusion import Extruded, Extrusion, directions
+from renderer.shells.extrusion import Extrusion, directions
 from renderer.shells.shell import Shell, update_shell
+from renderer.shells.shell_bake import shell_of
+from renderer.shells.surfaces import surface_of
+
+MOVING = ("positions", "planes", "to_texture", "volumes")
+"""Arrays of a shell that change as it moves; the others hold its topology."""
 
 WAVES = 8
 """Plane waves of each component of the noise."""
@@ -115,26 +121,47 @@ def twisted(vertices: np.ndarray, angle: float) -> np.ndarray:
 
 
 def positions_at(
-    base: BaseMesh, extruded: Extruded, extrusion: Extrusion, motion: AnyMotion, time: float
+    base: BaseMesh, length: np.ndarray, extrusion: Extrusion, motion: AnyMotion, time: float
 ) -> np.ndarray:
     """Where the shell's vertices are at a time [s], (2V, 3) [m].
 
-    Offsets keep the lengths of the mesh at rest, clamped as they are there, along directions of the mesh as it is now.
+    Args:
+        base: the mesh at rest.
+        length: (V,) of its offsets at rest, clamped, which they keep, m; their directions are those of the mesh as it
+            is at that time.
     """
     vertices = deformed(base, motion, time)
     way, _ = directions(vertices, base.faces, extrusion)
-    length = extruded.length * extruded.clamped.share
     return np.concatenate([vertices, vertices + way * length[:, None]])
 
 
-def shell_at(
-    shell: Shell, base: BaseMesh, extruded: Extruded, extrusion: Extrusion, motion: AnyMotion, time: float
-) -> tuple[Shell, np.ndarray]:
-    """The shell at a time [s], from the shell at any other, and the numbers of the tetrahedra computed anew, (N,).
+class MovingShell:
+    """A baked shell that follows a motion: at each time only what moved since the last is computed.
 
-    Dufort 2005, section 5.3.3: only tetrahedra that a deformation changed are computed again.
+    Dufort 2005, section 5.3.3: tetrahedra that a deformation changed are marked, and planes and maps of these alone
+    are computed again.
+
+    Args:
+        surface, shell: arrays of the bakes. extrusion: the document's.
     """
-    return update_shell(shell, positions_at(base, extruded, extrusion, motion, time))
+
+    def __init__(self, surface: Arrays, shell: Arrays, extrusion: Extrusion) -> None:
+        self._base, self._extrusion = surface_of(surface), extrusion
+        self._length = shell["wanted"] * shell["share"]
+        self.shell: Shell = shell_of(shell)
+
+    def move(self, motion: AnyMotion, time: float) -> np.ndarray:
+        """Go to a time [s], and return the numbers of the tetrahedra that changed, (N,)."""
+        positions = positions_at(self._base, self._length, self._extrusion, motion, time)
+        self.shell, changed = update_shell(self.shell, positions)
+        return changed
+
+    def arrays(self, surface: Arrays, shell: Arrays) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray]]:
+        """Arrays like those of the bakes, of the surface and the shell as they are now."""
+        vertices = self.shell.positions[: len(self._base.vertices)]
+        moved = {name: getattr(self.shell, name) for name in MOVING}
+        normals = vertex_normals(vertices, self._base.faces)
+        return {**surface, "vertices": vertices, "normals": normals}, {**shell, **moved}
 
 
 def _waves(places: np.ndarray, motion: NoiseMotion, phase: float) -> np.ndarray:

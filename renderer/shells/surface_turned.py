@@ -23,18 +23,26 @@ MUSHROOM = np.array([
 FINE = 4000
 """Points at which a curve's length is measured."""
 
+BENDS = 0.6
+"""Weight of a curve's turning against its length where it is cut into cells."""
+
 
 def curve(points: np.ndarray, cells: int) -> np.ndarray:
-    """A smooth curve through points, at equal distances along it, (cells + 1, 2).
+    """A smooth curve through points, cut more finely where it bends, (cells + 1, 2).
 
-    A cubic spline in the length of the polygon through the points; its ends keep to the axis where the points do.
+    A cubic spline in the length of the polygon through the points. Its cells share out its length, and `BENDS` times
+    as much all that it turns by.
     """
     along = arc_lengths(points)
     # Level where it leaves the axis, so that the turned surface has no point there.
     level = ((1, (points[1] - points[0]) / (along[1] - along[0])), "natural")
     spline = CubicSpline(along, points, bc_type=level)
     fine = spline(np.linspace(0, 1, FINE))
-    places = np.interp(np.arange(cells + 1) / cells, arc_lengths(fine), np.linspace(0, 1, FINE))
+    step = np.diff(fine, axis=0)
+    turn = np.abs(np.diff(np.unwrap(np.arctan2(step[:, 1], step[:, 0]))))
+    bends = np.concatenate([[0.0], np.cumsum(np.append(turn, 0.0))])
+    shares = (arc_lengths(fine) + BENDS * bends / bends[-1]) / (1 + BENDS)
+    places = np.interp(np.arange(cells + 1) / cells, shares, np.linspace(0, 1, FINE))
     found: np.ndarray = spline(places)
     found[[0, -1]] = points[[0, -1]]
     return found

@@ -8,8 +8,8 @@ from typing import Annotated, Any, Literal
 import numpy as np
 from pydantic import Field, TypeAdapter
 
-from renderer.core.params import Model, bake_arguments, param
-from renderer.core.technique import Arrays, Bake
+from renderer.core.params import Model, param
+from renderer.core.technique import Arrays
 from renderer.shells import surface_grids
 from renderer.shells.base_mesh import BaseMesh, vertex_normals
 from renderer.shells.surface_mapping import Mapping, load_surface
@@ -193,11 +193,6 @@ def bake_surface(
         "normals": vertex_normals(made.vertices, made.faces),
         "notes": np.array(made.notes, dtype=np.str_),
     }
-
-
-def surface_bake(surface: AnySurface) -> Bake:
-    """The mesh of the document's surface."""
-    return Bake("surface", bake_surface, bake_arguments(surface), seconds=0.5)
 
 
 def surface_of(arrays: Arrays) -> BaseMesh:

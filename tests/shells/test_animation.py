@@ -8,11 +8,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from renderer.shells.animation import Bend, Bump, NoiseMotion, Still, Twist, bent, deformed, shell_at, twisted
+from renderer.core.params import bake_arguments
+from renderer.shells.animation import Bend, Bump, MovingShell, NoiseMotion, Still, Twist, bent, deformed, twisted
 from renderer.shells.base_mesh import BaseMesh, vertex_normals
-from renderer.shells.extrusion import Extrusion, extrude
+from renderer.shells.extrusion import Extrusion
 from renderer.shells.shell import build_shell
-from renderer.shells.surfaces import Sphere, Tube
+from renderer.shells.shell_bake import bake_shell, shell_of
+from renderer.shells.surfaces import Sphere, Tube, bake_surface, surface_of
 
 MOTIONS = [NoiseMotion(), Bend(), Twist(), Bump()]
 
@@ -83,15 +85,23 @@ def test_a_bump_is_local() -> None:
 @pytest.mark.parametrize("motion", MOTIONS, ids=named)
 def test_the_shell_follows_by_what_moved_alone(motion: Any) -> None:
     """From any earlier time, the shell is the one that would be built now; few cells change under a bump."""
-    mesh, extrusion = Sphere(divisions=8).mesh(), Extrusion(thickness=0.05)
-    rest = extrude(mesh, extrusion)
-    shell = build_shell(mesh, rest.offset)
-    before, _ = shell_at(shell, mesh, rest, extrusion, motion, 1.0)
-    now, changed = shell_at(before, mesh, rest, extrusion, motion, 1.1)
+    extrusion = Extrusion(thickness=0.05)
+    surface = bake_surface(bake_arguments(Sphere(divisions=8)), {}, lambda *_: None)
+    baked = bake_shell(bake_arguments(extrusion), {"surface": surface}, lambda *_: None)
+    moving = MovingShell(surface, baked, extrusion)
+    assert len(moving.move(Still(), 0.0)) == 0
+    moving.move(motion, 1.0)
+    changed = moving.move(motion, 1.1)
+    mesh = surface_of(surface)
     vertices = deformed(mesh, motion, 1.1)
     offset = 0.05 * vertex_normals(vertices, mesh.faces)
     built = build_shell(BaseMesh(vertices, mesh.faces, mesh.corner_uv), offset)
     for name in ("positions", "planes", "to_texture", "volumes"):
-        np.testing.assert_allclose(getattr(now, name), getattr(built, name), rtol=1e-9, atol=1e-9)
-    share = len(changed) / len(shell.tets)
+        np.testing.assert_allclose(getattr(moving.shell, name), getattr(built, name), rtol=1e-9, atol=1e-9)
+    share = len(changed) / len(built.tets)
     assert 0.05 < share < 0.4 if motion.kind == "bump" else share > 0.9
+    now, shell = moving.arrays(surface, baked)
+    np.testing.assert_allclose(shell_of(shell).to_texture, built.to_texture, rtol=1e-9, atol=1e-9)
+    np.testing.assert_array_equal(now["vertices"], vertices)
+    np.testing.assert_array_equal(now["normals"], vertex_normals(vertices, mesh.faces))
+    assert len(moving.move(motion, 1.1)) == 0

@@ -11,6 +11,7 @@ import pytest
 from renderer.core.cache import AssetStore
 from renderer.core.errors import AssetError
 from renderer.core.params import bake_arguments
+from renderer.core.technique import Bake
 from renderer.shells.base_mesh import vertex_normals
 from renderer.shells.extrusion import (
     Dab,
@@ -24,7 +25,7 @@ from renderer.shells.extrusion import (
 )
 from renderer.shells.shell import build_shell
 from renderer.shells.shell_bake import bake_shell, conflicting, shell_bake, shell_facts, shell_of, shell_words
-from renderer.shells.surfaces import Mushroom, Plane, Sphere, bake_surface, surface_bake
+from renderer.shells.surfaces import Mushroom, Plane, Sphere, bake_surface
 from tests.shells.meshes import smeared
 
 
@@ -103,7 +104,7 @@ def test_the_bake_gives_the_shell_and_its_report() -> None:
     surface = Mushroom(around=16, along=20)
     extrusion = Extrusion(thickness=0.25)
     base = bake_surface(bake_arguments(surface), {}, lambda *_: None)
-    bake = shell_bake(extrusion, surface_bake(surface))
+    bake = shell_bake(extrusion, Bake("surface", bake_surface, bake_arguments(surface)))
     arrays = bake.function(bake.arguments, {"surface": base}, lambda *_: None)
     mesh = surface.mesh()
     direct = build_shell(mesh, extrude(mesh, extrusion).offset)
