@@ -6,6 +6,9 @@ matter by two parts of two Gauss-Legendre nodes, the source linear in the optica
 extinctions and emissions add. The way to the sun crosses every shell alike, two nodes a voxel, and ends behind opaque
 faces; how much of it is left is sampled in strata along the ray of the eye, which is the only noise of the picture and
 what its standard error speaks of. The sky's light is not shadowed, by the definition of the light.
+
+Where matter scatters within itself, the picture is of paths of light instead (`shells_paths`): all orders, faces among
+them, the sun through all shells and the sky from where it is seen; nothing of it is approximated, all of it is noisy.
 """
 
 from __future__ import annotations
@@ -21,11 +24,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from renderer.core.errors import InputError, LimitError
+from renderer.reference.shells_paths import path_rows
 from renderer.reference.shells_rays import MOST, rows
 from renderer.reference.shells_world import Floats, Scene, ShellsWorld, prepare
 
 Rays = Callable[[tuple[float, float]], tuple[Floats, Floats]]
 Progress = Callable[[float, str], None]
+
+PATHS, POSITIONS = 2_500_000, 16
+"""Paths of a picture of scattered light, and its positions: a minute or two on two cores."""
 
 CHUNK = 4
 """Rows between two looks at the caller's wish to stop."""
@@ -33,15 +40,19 @@ CHUNK = 4
 
 @dataclass(frozen=True)
 class Options:
-    """How finely the sun's light is sampled.
+    """How finely light is sampled.
 
     Attributes:
         sun_rays: strata of sunlight on white that faces it, one ray each; darker matter has fewer.
-        seed: of the places within the strata.
+        paths: of each ray where light is scattered; 0 for `PATHS` in a picture of 16 positions, whatever its size.
+        orders: of scattering that a path is followed for; 0 for all.
+        seed: of all that is random.
         threads: that trace; 0 takes every core.
     """
 
     sun_rays: int = 128
+    paths: int = 0
+    orders: int = 0
     seed: int = 1
     threads: int = 0
 
@@ -94,8 +105,8 @@ def render(
     places = np.asarray(positions, np.float64)
     if places.ndim != 2 or places.shape[1] != 2 or not len(places):
         raise InputError("positions", f"has shape {places.shape}", "(S, 2), S at least 1")
-    if options.sun_rays < 1:
-        raise InputError("options", "the sun needs at least one ray")
+    if options.sun_rays < 1 or options.paths < 0 or options.paths == 1 or options.orders < 0:
+        raise InputError("options", "the sun needs a ray, and an error two paths")
     begun = time.perf_counter()
     scene = prepare(world)
     report = progress or (lambda share, words: None)
@@ -109,28 +120,35 @@ def render(
                 behind[:] = np.reshape(world.background(directions.reshape(-1, 3)), directions.shape)
             if sums is None:
                 sums = np.zeros((*origins.shape[:2], 4)), np.zeros(origins.shape[:2])
-            _position(pool, scene, options, (origins, directions, behind), (number, len(places)), sums, report)
+            task = _task(world, scene, options, (origins, directions, behind), number, sums)
+            _position(pool, task, origins.shape[0], (number, len(places)), report)
     assert sums is not None
     return Reference(sums[0] / len(places), np.sqrt(sums[1]) / len(places), time.perf_counter() - begun)
 
 
-def _position(
-    pool: ThreadPoolExecutor,
+def _task(
+    world: ShellsWorld,
     scene: Scene,
     options: Options,
     rays: tuple[Floats, Floats, Floats],
-    which: tuple[int, int],
+    number: int,
     sums: tuple[Floats, Floats],
-    report: Progress,
+) -> Callable[[int, int], bool]:
+    """What adds some rows of one position to the sums; tells whether there was room for all that meets."""
+    if world.light == "scattering":
+        scattering = np.array([world.asymmetry, options.orders or np.inf, world.sky_below])
+        paths = options.paths or max(8, round(PATHS / POSITIONS / rays[0][..., 0].size))
+        return lambda begin, end: path_rows(scene, *rays, begin, end, scattering, paths, options.seed, number, *sums)
+    quantum = max(float(scene.lights[1].mean()) / math.pi, 1e-300) / options.sun_rays
+    return lambda begin, end: rows(scene, *rays, begin, end, quantum, options.seed, number, *sums)
+
+
+def _position(
+    pool: ThreadPoolExecutor, task: Callable[[int, int], bool], height: int, which: tuple[int, int], report: Progress
 ) -> None:
     """Add one position of the whole picture, a few rows at a time on every thread."""
     number, count = which
-    quantum = max(float(scene.lights[1].mean()) / math.pi, 1e-300) / options.sun_rays
-    height = sums[0].shape[0]
-    waiting = [
-        pool.submit(rows, scene, *rays, first, min(first + CHUNK, height), quantum, options.seed, number, *sums)
-        for first in range(0, height, CHUNK)
-    ]
+    waiting = [pool.submit(task, first, min(first + CHUNK, height)) for first in range(0, height, CHUNK)]
     try:
         for done, chunk in enumerate(waiting, start=1):
             if not chunk.result():

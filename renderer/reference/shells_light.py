@@ -118,35 +118,50 @@ def _picture(scene, face, x, y, c):
 
 
 @inner
+def face_at(scene, face, d, u, v, albedo):
+    """What a ray meets of a face: reflectance in `albedo` (3,), and towards the eye, the smooth normal and the face's
+    own, both unit."""
+    a, b, c = scene.corners[face, 0], scene.corners[face, 1], scene.corners[face, 2]
+    x = (b[1] - a[1]) * (c[2] - a[2]) - (b[2] - a[2]) * (c[1] - a[1])
+    y = (b[2] - a[2]) * (c[0] - a[0]) - (b[0] - a[0]) * (c[2] - a[2])
+    z = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+    scale = (1.0 if x * d[0] + y * d[1] + z * d[2] <= 0.0 else -1.0) / math.sqrt(x * x + y * y + z * z)
+    flat = (scale * x, scale * y, scale * z)
+    w, normals, uv = 1.0 - u - v, scene.normals[face], scene.uv[face]
+    x = w * normals[0, 0] + u * normals[1, 0] + v * normals[2, 0]
+    y = w * normals[0, 1] + u * normals[1, 1] + v * normals[2, 1]
+    z = w * normals[0, 2] + u * normals[1, 2] + v * normals[2, 2]
+    scale = (1.0 if scale > 0.0 else -1.0) / math.sqrt(max(x * x + y * y + z * z, 1e-300))
+    left = w * uv[0, 0] + u * uv[1, 0] + v * uv[2, 0]
+    down = w * uv[0, 1] + u * uv[1, 1] + v * uv[2, 1]
+    for k in range(3):
+        albedo[k] = w * scene.albedo[face, 0, k] + u * scene.albedo[face, 1, k] + v * scene.albedo[face, 2, k]
+        if scene.pictures[face, 1] > 0:
+            albedo[k] *= _picture(scene, face, left, down, k)
+    return (scale * x, scale * y, scale * z), flat
+
+
+@inner
+def sun_on(scene, normal, flat):
+    """Cosine of the sun on a face, 0 where the face itself looks away."""
+    sun = scene.lights[0]
+    if flat[0] * sun[0] + flat[1] * sun[1] + flat[2] * sun[2] <= 0.0:
+        return 0.0
+    return max(normal[0] * sun[0] + normal[1] * sun[1] + normal[2] * sun[2], 0.0)
+
+
+@inner
 def face_light(scene, face, d, u, v, own, sunny):
     """What an opaque face sends towards the eye: always, and if the whole sun shone on it, (3,) each."""
-    corners, normals, albedo, uv = scene.corners[face], scene.normals[face], scene.albedo[face], scene.uv[face]
-    lights, numbers = scene.lights, scene.numbers
-    w = 1.0 - u - v
-    towards, up, flat_sun, sun, long = 0.0, 0.0, 0.0, 0.0, 0.0
+    normal, flat = face_at(scene, face, d, u, v, own)
+    facing = sun_on(scene, normal, flat)
     for k in range(3):
-        i, j = (k + 1) % 3, (k + 2) % 3
-        e = (corners[1, i] - corners[0, i]) * (corners[2, j] - corners[0, j])
-        e -= (corners[1, j] - corners[0, j]) * (corners[2, i] - corners[0, i])
-        towards -= e * d[k]
-        flat_sun += e * lights[0, k]
-        up = w * normals[0, k] + u * normals[1, k] + v * normals[2, k]
-        sun += up * lights[0, k]
-        long += up * up
-    side = 1.0 if towards >= 0.0 else -1.0
-    scale = side / math.sqrt(max(long, 1e-300))
-    facing = sun * scale if flat_sun * side > 0.0 and sun * scale > 0.0 else 0.0
-    x = w * uv[0, 0] + u * uv[1, 0] + v * uv[2, 0]
-    y = w * uv[0, 1] + u * uv[1, 1] + v * uv[2, 1]
-    for k in range(3):
-        reflects = w * albedo[0, k] + u * albedo[1, k] + v * albedo[2, k]
-        if scene.pictures[face, 1] > 0:
-            reflects *= _picture(scene, face, x, y, k)
+        sunny[k] = 0.0
         if scene.kinds[1] == UNLIT:
-            own[k], sunny[k] = reflects * numbers[1], 0.0
+            own[k] *= scene.numbers[1]
         else:
-            own[k] = reflects / math.pi * 0.5 * (1.0 + scale * up) * lights[2, k]
-            sunny[k] = reflects / math.pi * facing * lights[1, k]
+            sunny[k] = own[k] / math.pi * facing * scene.lights[1, k]
+            own[k] *= 0.5 * (1.0 + normal[2]) * scene.lights[2, k] / math.pi
 
 
 @inner

@@ -143,9 +143,16 @@ def wrapped(index, count, repeats):
 
 @inner
 def corner_densities(scene, cell, values):
-    """Extinction, or alpha, at the corners of a cell between eight centres, 1 last along u; returns the largest."""
+    """Extinction, or alpha, at the corners of a cell between eight centres; returns the largest, 1 without a look where
+    nothing is interpolated."""
+    if scene.kinds[0] == NEAREST:
+        return 1.0
     depth, height, width = scene.density.shape
     repeats = scene.kinds[2] != 0
+    i = cell[0] % width if repeats else min(max(cell[0], -1), width - 1)
+    j = cell[1] % height if repeats else min(max(cell[1], -1), height - 1)
+    if scene.occupied[min(max(cell[2], -1), depth - 1) + 1, j + 1, i + 1] == 0:
+        return 0.0
     largest = 0.0
     for c in range(8):
         i = wrapped(cell[0] + (c & 1), width, repeats)

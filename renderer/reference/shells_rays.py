@@ -64,7 +64,7 @@ def _matter_at(scene, here, t, one, own, sunny):
     own[:] = 0.0
     sunny[:] = 0.0
     for n in range(count[0]):
-        if scene.kinds[0] != NEAREST and largest[n] == 0.0:
+        if largest[n] == 0.0:
             continue
         at, along, cell = ats[n], alongs[n], cells[n]
         x, y, z = at[0] + t * along[0] - cell[0], at[1] + t * along[1] - cell[1], at[2] + t * along[2] - cell[2]

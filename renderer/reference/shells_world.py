@@ -17,7 +17,7 @@ Colour3 = tuple[float, float, float]
 NEAREST, STRAIGHT, EXTINCTION = 0, 1, 2
 """How a texture is read between its voxels' centres."""
 
-UNLIT, LAMBERT = 0, 1
+UNLIT, LAMBERT, SCATTERING = 0, 1, 2
 """What matter sends towards the eye."""
 
 OPAQUEST = 1.0 - 2.0**-12
@@ -58,7 +58,9 @@ class ShellsWorld:
             `glow_radiance` that the voxel sends; None for matter without either.
         interpolation: piecewise constant; trilinear colour and alpha; or trilinear extinction and its products.
         wrap: of the texture in u and v; it is clamped in w.
-        light: `unlit`: reflectance times `level`; `lambert`: by sun and sky.
+        light: `unlit`: reflectance times `level`; `lambert`: by sun and sky; `scattering`: every order of scattering
+            by Henyey and Greenstein's lobe of mean cosine `asymmetry`, reflectance (at most 1) being the share that is
+            scattered, normals left unread.
         sun: unit vector to it. e_sun: irradiance facing it. e_sky: of the sky on the horizontal. All W m-2.
         surfaces: opaque things; the shells' own base among them where it is opaque.
         background: radiance behind everything, for directions (M, 3) -> (M, 3); None leaves it empty.
@@ -73,12 +75,14 @@ class ShellsWorld:
     size: Colour3 = (1.0, 1.0, 1.0)
     interpolation: Literal["nearest", "straight", "extinction"] = "extinction"
     wrap: Literal["repeat", "clamp"] = "repeat"
-    light: Literal["unlit", "lambert"] = "unlit"
+    light: Literal["unlit", "lambert", "scattering"] = "unlit"
     level: float = 1.0
     glow_radiance: Colour3 = (0.0, 0.0, 0.0)
     sun: Colour3 = (0.0, 0.0, 1.0)
     e_sun: Colour3 = (0.0, 0.0, 0.0)
     e_sky: Colour3 = (0.0, 0.0, 0.0)
+    sky_below: float = 0.0
+    asymmetry: float = 0.0
     surfaces: tuple[Surface, ...] = field(default=())
     background: Callable[[Floats], Floats] | None = None
 
@@ -102,8 +106,9 @@ class Scene(NamedTuple):
         solids: tree of the tetrahedra. planes: (T, 4, 4), n.x + d > 0 outside. maps: (T, 3, 4) to voxels, centres at
             whole numbers where interpolated, at halves elsewhere. turns: (T, 3, 3) from the texture's normals to the
             world's, not unit.
-        density: (K, J, I) extinction, 1/m; alpha where that is interpolated. colour: (K, J, I, 3). normal: (K, J, I,
-            4), or of one voxel where there is none.
+        density: (K, J, I) extinction, 1/m; alpha where that is interpolated. occupied: (K + 1, J + 1, I + 1) whether
+            there is any at the corners of the cells between eight centres, the first before the first centre.
+        colour: (K, J, I, 3). normal: (K, J, I, 4), or of one voxel where there is none.
         faces: tree of the triangles. corners, normals, albedo: (F, 3, 3). uv: (F, 3, 2). pictures: (F, 3), where its
             texels begin, rows and columns; 0 rows for none. texels: (N, 3) of all pictures.
         numbers: reference length, level, how far off a face a ray begins. lights: (4, 3), sun, e_sun, e_sky, glow.
@@ -115,6 +120,7 @@ class Scene(NamedTuple):
     maps: Floats
     turns: Floats
     density: Floats
+    occupied: NDArray[np.uint8]
     colour: Floats
     normal: NDArray[np.float32]
     faces: Tree
@@ -161,6 +167,7 @@ def prepare(world: ShellsWorld) -> Scene:
         turns=np.ascontiguousarray(np.swapaxes(linear, 1, 2) * np.asarray(world.size, np.float64)),
         # copied: a frozen array would be one more type to compile for
         density=np.array(density, np.float64, order="C"),
+        occupied=_occupied(density, world.wrap == "repeat") if smooth else np.zeros((1, 1, 1), np.uint8),
         colour=np.array(world.colour[..., :3], np.float64, order="C"),
         normal=np.array(normal, np.float32, order="C"),
         faces=tree(faces["corners"].min(axis=1), faces["corners"].max(axis=1), 1e-12 * span),
@@ -170,7 +177,7 @@ def prepare(world: ShellsWorld) -> Scene:
         lights=np.array([world.sun, world.e_sun, world.e_sky, world.glow_radiance], np.float64),
         kinds=np.array([
             {"nearest": NEAREST, "straight": STRAIGHT, "extinction": EXTINCTION}[world.interpolation],
-            {"unlit": UNLIT, "lambert": LAMBERT}[world.light],
+            {"unlit": UNLIT, "lambert": LAMBERT, "scattering": SCATTERING}[world.light],
             world.wrap == "repeat",
             world.normal is not None,
         ], np.int64),
@@ -180,6 +187,16 @@ def prepare(world: ShellsWorld) -> Scene:
 def extinction(alpha: Floats, length: float) -> Floats:
     """Extinction per metre of matter that hides `alpha` of what is behind `length` metres of it (formulas g)."""
     return -np.log1p(-np.minimum(alpha, OPAQUEST)) / length
+
+
+def _occupied(density: Floats, repeats: bool) -> NDArray[np.uint8]:
+    """Whether anything is at the corners of the cells between eight centres."""
+    there = np.pad(density > 0, ((0, 0), (1, 1), (1, 1)), mode="wrap" if repeats else "edge")
+    there = np.pad(there, ((1, 1), (0, 0), (0, 0)), mode="edge")
+    for axis in range(3):
+        first, last = (np.take(there, np.arange(n, there.shape[axis] - 1 + n), axis=axis) for n in (0, 1))
+        there = first | last
+    return np.ascontiguousarray(there, np.uint8)
 
 
 def _check(world: ShellsWorld) -> None:
@@ -194,6 +211,8 @@ def _check(world: ShellsWorld) -> None:
         raise InputError("normal", f"has shape {world.normal.shape}", f"{world.colour.shape}, as colour has")
     if not world.reference_length > 0:
         raise InputError("reference_length", f"is {world.reference_length}", "metres above 0")
+    if not -1 < world.asymmetry < 1:
+        raise InputError("asymmetry", f"is {world.asymmetry}", "between -1 and 1")
     if abs(float(np.linalg.norm(world.sun)) - 1.0) > 1e-6:
         raise InputError("sun", "is no unit vector")
 
