@@ -64,6 +64,7 @@ def mesh(path: Path, limits: Limits, reading: Mapping[str, Any]) -> Preview:
         "lowest_corner": [float(value) for value in low],
         "watertight": body.watertight,
         "two_sided": body.two_sided,
+        "texture_coordinates": body.corner_uv is not None,
         "notes": "; ".join(body.notes),
     }
 

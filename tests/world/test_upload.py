@@ -121,6 +121,7 @@ def test_previews_say_size_units_and_extent(samples: dict[str, Path]) -> None:
     assert land["elevation"] == {"lowest": 0, "highest": 29}
     body = check_in_worker(samples["glb"], "mesh")
     assert (body["faces"], body["extent"], body["watertight"]) == (12, pytest.approx([1, 1, 1]), True)
+    assert body["texture_coordinates"] is False
     box = PREVIEWS["volume"](samples["volume"], Limits(), {})
     assert (box["voxels"], box["extent"], box["reference_length"]) == ([4, 3, 2], [2, 1.5, 1], 0.5)
     assert PREVIEWS["image"](samples["png8"], Limits(), {})["width"] == 4
