@@ -105,15 +105,20 @@ def refit(total, shown, normal, starts, eyes, suns, least, most, result):
                     lit[count], cross[count] = facing, facing * abs(seen)
                     even[count] = between - cross[count]
                     count += 1
-            c[:] = starts[row, column]
+            for k in range(4):
+                c[k] = starts[row, column, k]
             if count:
                 _descend(c, tried, wanted, weight, lit, even, cross, count, matrix, right, slope, least, most)
-            result[row, column] = c
+            for k in range(4):
+                result[row, column, k] = c[k]
 
 
 @njit(cache=True, nogil=True)
 def _descend(c, tried, wanted, weight, lit, even, cross, count, matrix, right, slope, least, most):
-    """Improve coefficients `c` in place."""
+    """Improve coefficients `c` in place.
+
+    Coefficients are copied one by one: to compile the assignment of an array takes seconds, for its errors' words.
+    """
     best, damping = _error(c, wanted, weight, lit, even, cross, count), 1e-2
     for _ in range(ROUNDS):
         matrix[:], right[:] = 0.0, 0.0
@@ -138,7 +143,8 @@ def _descend(c, tried, wanted, weight, lit, even, cross, count, matrix, right, s
             tried[p] = min(max(c[p] + right[p], least[p]), most[p])
         error = _error(tried, wanted, weight, lit, even, cross, count)
         if error < best:
-            c[:] = tried
+            for p in range(4):
+                c[p] = tried[p]
             best, damping = error, damping * 0.3
         else:
             damping *= 8.0

@@ -78,8 +78,11 @@ def _hits(index, snapped, face, axis, size, wrap, found):
             if wa < la or wb < lb or wc < lc:
                 continue
             if count == found.shape[0]:
+                # entry by entry: to compile the assignment of a slice takes seconds, for the words of its errors
                 grown = np.empty((2 * count, 4), np.int64)
-                grown[:count] = found
+                for entry in range(count):
+                    for c in range(4):
+                        grown[entry, c] = found[entry, c]
                 found = grown
             depth = np.int64(np.floor((wa * az + wb * bz + wc * cz) / doubled))
             found[count, axis] = depth % size[axis] if wrap[axis] else depth
