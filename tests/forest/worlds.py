@@ -13,10 +13,10 @@ from renderer.core.cache import key_of
 from renderer.core.params import merge, validate
 from renderer.core.registry import techniques
 from renderer.core.technique import Arrays, Bake, BakedArrays
+from renderer.forest import pattern_mips, seen_kernels, seen_levels
 from renderer.forest.pattern import AXES, WOOD
 from renderer.forest.pattern_mips import mips
 from renderer.forest.safe_distance import safe_distance
-from renderer.forest.seen_levels import seen_levels
 from renderer.forest.state import ForestState
 from renderer.forest.tiles import tile_table
 from renderer.forest.world_scale import CELL, NODES, VOXEL
@@ -62,7 +62,7 @@ def ground(elevation: np.ndarray | float = 0.0, cover: np.ndarray | float = 1.0)
 def with_levels(level: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
     """The finest level of a pattern and the coarser ones made of it."""
     coarser = {f"{name}_{n}": array for n, given in enumerate(mips(level), 1) for name, array in given.items()}
-    return {**level, **coarser, **seen_levels(level, AXES, VOXEL, lambda share: None)}
+    return {**level, **coarser, **seen_levels.seen_levels(level, AXES, VOXEL, lambda share: None)}
 
 
 def uniform(alpha: int, albedo: float = 0.5, ambient: int = 0, layers: slice = slice(None)) -> dict[str, np.ndarray]:
@@ -206,11 +206,14 @@ def grove_pattern(arguments: dict[str, Any], inputs: dict[str, Arrays], progress
 def grove_levels(arguments: dict[str, Any], inputs: dict[str, Arrays], progress: Progress) -> Arrays:
     """The grove's pattern with all its levels."""
     pattern = grove_pattern(arguments, inputs, progress)
-    return {**pattern, **seen_levels(pattern, AXES, VOXEL, lambda share: None)}
+    return {**pattern, **seen_levels.seen_levels(pattern, AXES, VOXEL, lambda share: None)}
 
 
 VERSION = zlib.crc32("".join(map(inspect.getsource, (grove_ground, grove_pattern))).encode())
 """Of the grove: its bakes and its references are made anew when it changes."""
 
+LEVELS = zlib.crc32("".join(map(inspect.getsource, (pattern_mips, seen_kernels, seen_levels))).encode())
+"""Of what makes its coarser levels: these are baked anew when that changes; no reference reads them."""
+
 GROVE_GROUND = Bake("terrain", grove_ground, {}, version=VERSION)
-GROVE_PATTERN = Bake("pattern", grove_levels, {}, version=VERSION)
+GROVE_PATTERN = Bake("pattern", grove_levels, {"levels": LEVELS}, version=VERSION)
