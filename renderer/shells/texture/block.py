@@ -127,28 +127,40 @@ def opacity_at(
     if second == 1.0 and not strands:
         return None
     full = np.ascontiguousarray(baked["colour"][..., 3], np.float32)
-    nothing = np.zeros((1, 1, 1), np.float32)
-    birth = np.asarray(baked["birth"], np.float32) if strands else nothing
-    rank = np.asarray(baked["rank"], np.float32) if strands else nothing
     out = np.empty_like(full)
-    _opacity(full, baked["material"], birth, rank, np.array([growth, density, second], np.float32), strands, out)
+    _opacity(full, baked["material"], *moment_arrays(baked, growth, density, second), out)
     return out
 
 
-@numba.njit(cache=True, fastmath=True)
-def _opacity(full, material, birth, rank, moment, strands, out):
+@numba.njit(cache=True, inline="always")
+def opacity_then(opacity, material, birth, rank, growth, density, second):
+    """Opacity of one voxel at a moment (see `opacity_at`); where there are no strands, `birth` and `rank` are 0 and
+    growth and density 1."""
+    if material == 2:
+        opacity *= second
+    if rank >= density:
+        return np.float32(0)
+    return opacity * min(max((growth - birth) / SOFT_TIP, np.float32(0)), np.float32(1))
+
+
+def moment_arrays(
+    baked: Mapping[str, np.ndarray], growth: float, density: float, second: float
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Birth and rank (K, J, I) float32 of a bake, and the moment (3,), as compiled loops take them."""
+    if "birth" in baked:
+        moment = np.array([growth, density, second], np.float32)
+        return np.asarray(baked["birth"], np.float32), np.asarray(baked["rank"], np.float32), moment
+    nothing = np.broadcast_to(np.float32(0), baked["material"].shape)
+    return nothing, nothing, np.array([1.0, 1.0, second], np.float32)
+
+
+@numba.njit(cache=True, nogil=True)
+def _opacity(full, material, birth, rank, moment, out):
     growth, density, second = moment
     layers, rows, columns = full.shape
     for k in range(layers):
         for j in range(rows):
             for i in range(columns):
-                value = full[k, j, i]
-                if value > 0 and material[k, j, i] == 2:
-                    value *= second
-                if strands and value > 0:
-                    if rank[k, j, i] >= density:
-                        value = np.float32(0)
-                    else:
-                        grown = (growth - birth[k, j, i]) / SOFT_TIP
-                        value *= min(max(grown, np.float32(0)), np.float32(1))
-                out[k, j, i] = value
+                out[k, j, i] = opacity_then(
+                    full[k, j, i], material[k, j, i], birth[k, j, i], rank[k, j, i], growth, density, second
+                )

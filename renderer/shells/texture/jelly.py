@@ -33,13 +33,17 @@ class Jelly(Procedure):
     optical_depth: float = param(
         1.2, label="Optical depth", help="Of the jelly along the shell's thickness.", cost="bake", ge=0, le=8
     )
+    glowing: float = param(
+        0.0, label="Glowing balls", help="Share of the balls that send out light.", unit="ratio", cost="bake", ge=0,
+        le=1, step=0.05, source="Dufort 2005, section 5.3.1",
+    )
     second_opacity: float = param(
         1.0, label="Opacity of the jelly", help="Factor on the jelly's own.", unit="ratio", cost="host", ge=0, le=1,
         source="Dufort 2005, figure 5.13",
     )
 
     def matter(self) -> Matter:
-        """Balls are the first material, with normals; the jelly is the second and has none."""
+        """Balls are the first material, with normals; the jelly is the second and has none. The smallest balls glow."""
         centre, radius = self._balls()
         # Surfaces of unequal balls: the nearest one is sought among the nearest few centres.
         few = min(4, len(centre))
@@ -55,7 +59,9 @@ class Jelly(Procedure):
         thin = np.float32(-np.expm1(-self.optical_depth / self.layers))
         colour = mixed((thin * (1 - cover), self.jelly), (cover, self.ball))
         normal = unit(away).reshape(*self.shape, 3) * (cover > 0)[..., None]
-        return Matter(colour, with_glow(normal), np.where(cover > 0.05, 1, 2).astype(np.uint8))
+        lit = np.arange(len(centre)) >= round((1.0 - self.glowing) * len(centre))
+        glow = lit[nearest].reshape(self.shape) * cover
+        return Matter(colour, with_glow(normal, glow), np.where(cover > 0.05, 1, 2).astype(np.uint8))
 
     def _balls(self) -> tuple[np.ndarray, np.ndarray]:
         """Centres (N, 3) and radii (N,) of balls that do not meet, largest first, where the height is 1."""

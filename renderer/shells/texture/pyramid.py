@@ -14,8 +14,10 @@ All levels hold extinctions per reference length of level 0 and sizes of a mipma
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
+import numba
 import numpy as np
 
 from renderer.shells.texture.extinction import Extinct
@@ -74,16 +76,53 @@ def thesis_pyramid(finest: Extinct, voxel: Extents) -> list[Extinct]:
     Args:
         finest: level 0. voxel: its voxels' sides in reference lengths.
     """
-    levels, height, means = [finest], voxel[2], finest
+    levels, height, means = [finest], np.float32(voxel[2]), finest
     while max(levels[-1].matter.shape[:3]) > 1:
-        matter = levels[-1].matter
-        layers, rows, columns = (max(1, length // 2) for length in matter.shape[:3])
-        joined = _in_front(matter, 0, height, (True,))
-        height *= matter.shape[0] / layers
-        beside = _extinct(_average(_average(_opaque(joined, height), 1, rows), 2, columns), height)
+        matter = np.ascontiguousarray(levels[-1].matter, np.float32)
+        shape = tuple(max(1, length // 2) for length in matter.shape[:3])
+        found = np.empty((*shape, 4), np.float32)
+        (rows, row_parts), (down, down_parts), (beside, beside_parts) = map(_cells, matter.shape[:3], shape)
+        _joined(matter, rows, row_parts, down, down_parts, beside, beside_parts, height, found)
+        height *= np.float32(matter.shape[0] / shape[0])
         means = _halved(means)
-        levels.append(Extinct(beside, _rescaled(means.surface, means.matter[..., 3], beside[..., 3])))
+        levels.append(Extinct(found, _rescaled(means.surface, means.matter[..., 3], found[..., 3])))
     return levels
+
+
+@numba.njit(cache=True, nogil=True, fastmath=True)
+def _joined(matter, rows, row_parts, down, down_parts, beside, beside_parts, height, found):
+    """One level of the thesis: voxels of a column one over the other, light coming out at the top; columns averaged.
+
+    Args:
+        matter: extinction form. rows, down, beside: `_cells` along w, v and u, each with its parts.
+        height: of a voxel, in reference lengths. found: the coarser level, result.
+    """
+    one = np.float32(1)
+    for k in range(len(rows)):
+        whole = height * row_parts[k].sum()
+        for j in range(len(down)):
+            for i in range(len(beside)):
+                red = green = blue = passes = weight = np.float32(0)
+                for b in range(down.shape[1]):
+                    for a in range(beside.shape[1]):
+                        share = down_parts[j, b] * beside_parts[i, a]
+                        clear = share
+                        for s in range(rows.shape[1] - 1, -1, -1):
+                            own = matter[rows[k, s], down[j, b], beside[i, a]]
+                            if own[3] > 0:
+                                left = clear * math.exp(-own[3] * height * row_parts[k, s])
+                                taken = (clear - left) / own[3]
+                                red += taken * own[0]
+                                green += taken * own[1]
+                                blue += taken * own[2]
+                                clear = left
+                        passes += clear
+                        weight += share
+                passes = passes / weight
+                extinction = -math.log(max(passes, LEAST)) / whole
+                factor = extinction / (weight * (one - passes)) if passes < one else np.float32(0)
+                found[k, j, i, 0], found[k, j, i, 1] = red * factor, green * factor
+                found[k, j, i, 2], found[k, j, i, 3] = blue * factor, extinction
 
 
 def mean_pyramid(finest: Extinct) -> list[Extinct]:
@@ -116,7 +155,7 @@ def directional_pyramid(finest: Extinct, voxel: Extents) -> list[Directional]:
         along = np.empty((3, *shape, 4), np.float32)
         for k, axis in enumerate((2, 1)):
             count = columns[k].shape[axis]
-            columns[k] = _in_front(columns[k], axis, length[k], (True, False))
+            columns[k] = _in_front(columns[k], axis, length[k])
             length[k] *= count / shape[axis]
             beside = _opaque(columns[k], length[k])
             for across in {0, 1, 2} - {axis}:
@@ -199,25 +238,24 @@ def _average(array: np.ndarray, axis: int, count: int) -> np.ndarray:
     return mean
 
 
-def _in_front(matter: np.ndarray, axis: int, length: float, ways: tuple[bool, ...]) -> np.ndarray:
-    """Voxels joined in front of one another along an axis, to half as many; extinction form.
+def _in_front(matter: np.ndarray, axis: int, length: float) -> np.ndarray:
+    """Voxels joined in front of one another along an axis, to half as many; extinction form. The colour is the mean of
+    what comes out at either end.
 
     Args:
         length: of a voxel along the axis, in reference lengths.
-        ways: where the light comes out, at the axis' high end (True) or low end; the colour is their mean.
     """
     parts = _slots(matter, axis)
     extinction = _average(matter[..., 3], axis, max(1, matter.shape[axis] // 2))
     seen = np.zeros((*extinction.shape, 3), np.float32)
-    opacity = np.zeros_like(extinction)
-    for high in ways:
+    for order in (parts, parts[::-1]):
         clear = np.ones_like(extinction)
-        for own, share in parts[::-1] if high else parts:
+        for own, share in order:
             passes = np.exp(own[..., 3] * (-np.float32(length) * share))
             taken = np.divide(clear * (1 - passes), own[..., 3], out=np.zeros_like(passes), where=own[..., 3] > 0)
             seen += own[..., :3] * taken[..., None]
-            clear = clear * passes
-        opacity += 1 - clear
+            clear *= passes
+    opacity = 2 * (1 - clear)
     factor = np.divide(extinction, opacity, out=np.zeros_like(opacity), where=opacity > 0)
     found = np.empty((*extinction.shape, 4), np.float32)
     np.multiply(seen, factor[..., None], out=found[..., :3])

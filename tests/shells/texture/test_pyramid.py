@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from renderer.shells.texture.block import texture_of
-from renderer.shells.texture.extinction import Extinct, extinct
+from renderer.shells.texture.extinction import Extinct, extinct, halves
 from renderer.shells.texture.pyramid import (
     Directional,
     directional_pyramid,
@@ -54,6 +54,16 @@ def test_the_extinction_form_is_that_of_the_texture() -> None:
     np.testing.assert_allclose(fine.matter[..., :3], texture.colour[..., :3] * fine.matter[..., 3:], rtol=1e-6)
     np.testing.assert_allclose(fine.surface, texture.normal * fine.matter[..., 3:], rtol=1e-6, atol=1e-7)
     assert texture.reference_length == 0.25
+
+
+def test_halves_are_rounded_as_they_should() -> None:
+    rng = np.random.Generator(np.random.PCG64(5))
+    numbers = rng.standard_normal(20_000) * np.exp2(rng.uniform(-27, 14, 20_000))
+    edges = np.array([0.0, -0.0, 1.0, 2.0**-14, 2.0**-24, 2.0**-25, 65504.0, 1 + 2.0**-11, 1 + 3 * 2.0**-11])
+    given = np.concatenate([numbers, edges, -edges]).astype(np.float32)
+    np.testing.assert_array_equal(halves(given).view(np.uint16), given.astype(np.float16).view(np.uint16))
+    half = (given[:100] / 2).reshape(2, 50).astype(np.float16)
+    np.testing.assert_array_equal(halves(given[:100].reshape(2, 50), 0.5), half)
 
 
 @pytest.mark.parametrize("name", FILTERS)

@@ -96,6 +96,15 @@ def test_the_jelly_fades_and_the_balls_stay() -> None:
     np.testing.assert_array_equal(faded[~second], full[~second])
 
 
+def test_some_balls_glow_and_the_jelly_does_not() -> None:
+    dark, lit = baked(kind="jelly", **SMALL), baked(kind="jelly", glowing=0.5, **SMALL)
+    assert not dark["normal"][..., 3].any()
+    glows = lit["normal"][..., 3] > 0
+    assert glows.any()
+    assert (lit["colour"][glows] == dark["colour"][glows]).all()
+    assert not glows[lit["colour"][..., 3] < 0.1].any()
+
+
 @pytest.fixture
 def kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[..., str]:
     """Keeps arrays as an uploaded volume and says its name."""
