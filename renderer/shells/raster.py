@@ -101,6 +101,8 @@ class Rasters:
         self._canvases: OrderedDict[Hashable, Canvas] = OrderedDict()
         self.said: dict[str, Any] = {}
         """What the last picture's order counted."""
+        self.kept: dict[str, Any] = {}
+        """What an order found that may serve the next picture, by its kind."""
 
     def cells(self, frame: Frame) -> Cells:
         """Those of the frame's shell."""

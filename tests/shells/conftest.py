@@ -45,7 +45,7 @@ def thread() -> Iterator[GLThread]:
 
 @pytest.fixture(scope="session")
 def draw(thread: GLThread) -> Draw:
-    """Draws one sample at the pixels' centres: `draw(patch, colour, normal, reference_length, size)`."""
+    """Draws one sample at the pixels' centres: `draw(patch, colour, normal, reference_length, size, shell)`."""
     cache = Cache()
 
     def drawn(
@@ -54,6 +54,7 @@ def draw(thread: GLThread) -> Draw:
         normal: np.ndarray | None = None,
         reference_length: float = 0.1,
         size: int = 8,
+        shell: Mapping[str, np.ndarray] | None = None,
     ) -> np.ndarray:
         state = validate(ShellsState, {**PLAIN, **patch})
         arrays = {bake.name: BakedArrays(bake_key(bake), bake_now(bake, cache)) for bake in bakes(state)}
@@ -65,6 +66,8 @@ def draw(thread: GLThread) -> Draw:
             "reference_length": np.array(reference_length),
         }
         arrays["texture"] = BakedArrays("given", texture)
+        if shell is not None:
+            arrays["shell"] = BakedArrays("given shell", shell)
         return thread.call(_picture, state, arrays, size)
 
     return drawn

@@ -7,6 +7,9 @@ from typing import Any
 
 import numpy as np
 
+from renderer.shells.base_mesh import BaseMesh
+from renderer.shells.shell import Shell, build_shell
+from renderer.shells.shell_bake import GEOMETRY
 from renderer.world.camera import Orbit, rays
 from tests.shells.conftest import even, sigma
 from tests.shells.order.test_walk import GLOBE, hollow_sphere
@@ -41,7 +44,37 @@ def patches(seed: int = 3) -> np.ndarray:
     return block
 
 
-def difference(draw: Draw, order: dict[str, Any], world: dict[str, Any], size: int = 48) -> np.ndarray:
+def difference(
+    draw: Draw, order: dict[str, Any], world: dict[str, Any], size: int = 48, shell: Shell | None = None
+) -> np.ndarray:
     """By how much each pixel differs from the walk's, the greatest of its channels."""
-    block = patches()
-    return np.abs(draw({**world, **order}, block, size=size) - draw(world, block, size=size)).max(axis=-1)
+    given = None if shell is None else arrays_of(shell)
+    one, other = (draw(of, patches(), size=size, shell=given) for of in ({**world, **order}, world))
+    return np.asarray(np.abs(one - other).max(axis=-1))
+
+
+CYCLE = {
+    "camera": {"kind": "orthographic", "centre": [0, 0, 0], "direction": [0, 0, -1], "up": [0, 1, 0], "width": 2.4}
+}
+"""A view from above."""
+
+
+def bars(turns: int = 3) -> Shell:
+    """Long prisms that rise from one end to the other, each laid over the next one's low end: they have no order."""
+    points, faces = [], []
+    for turn in range(turns):
+        angle = 2 * np.pi * turn / turns
+        along, across = np.array([np.cos(angle), np.sin(angle), 0]), np.array([-np.sin(angle), np.cos(angle), 0])
+        middle = -0.45 * across
+        low, high = middle - 1.0 * along, middle + 1.0 * along + np.array([0, 0, 0.8])
+        faces.append(np.arange(3) + len(points))
+        points += [low - 0.12 * across, high, low + 0.12 * across]
+    vertices = np.array(points)
+    uv = np.tile(np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]), (turns, 1, 1))
+    mesh = BaseMesh(vertices, np.array(faces, np.int32), uv)
+    return build_shell(mesh, np.tile([0.0, 0.0, 0.1], (len(vertices), 1)))
+
+
+def arrays_of(shell: Shell) -> dict[str, np.ndarray]:
+    """A shell as its bake gives it to the renderer."""
+    return {**{name: getattr(shell, name) for name in GEOMETRY}, "counts": np.array([shell.edges.open, 0, 0])}
