@@ -140,11 +140,15 @@ def turned(clouds: Any, time: float) -> tuple[float, float]:
     return math.cos(turn), math.sin(turn)
 
 
+def threshold_of(clouds: Any) -> float:
+    """Standard deviations of the field above which its clouds stand."""
+    return math.sqrt(2.0) * float(erfinv(np.clip(1.0 - 2.0 * clouds.cover, -0.9999999, 0.9999999)))
+
+
 def _thickness(clouds: Any, field: np.ndarray) -> np.ndarray:
     """Thickness where the field has some value, as a share of the layer's."""
     # The cover's share of a normal distribution lies above the threshold; edges rise softly, and tops vary.
-    threshold = math.sqrt(2.0) * float(erfinv(np.clip(1.0 - 2.0 * clouds.cover, -0.9999999, 0.9999999)))
-    above = (field - threshold) / EDGE
+    above = (field - threshold_of(clouds)) / EDGE
     rise = np.where(above > 0.0, -np.expm1(-np.abs(above)), np.expm1(-np.abs(above)))
     swell = SWELLS * np.tanh(field / SWELLS)
     return np.asarray(rise * np.exp(clouds.variation * swell - 0.5 * clouds.variation**2))

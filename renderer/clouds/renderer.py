@@ -21,6 +21,7 @@ from renderer.clouds.frame_values import (
     variant_of,
     world_values,
 )
+from renderer.clouds.moving_map import field_texture, moving_map
 from renderer.clouds.program import (
     AIR_AROUND,
     AIR_ROWS,
@@ -216,6 +217,13 @@ class CloudsRenderer:
         self._stretches.release()
         self._airs.release()
 
+    def _map(self, state: CloudsState, key: str, fields: Arrays) -> dict[str, AnyTexture]:
+        """The moment's map: drawn where it is made of fields that turn into each other."""
+        if state.clouds.kind != "procedural":
+            return moment_map(self._gl, state.clouds, fields, cloud_side(state), state.time)
+        held = self._baked.get(("moving", key), lambda: field_texture(self._gl, fields))
+        return moving_map(self._gl, state.clouds, held, cloud_side(state), state.time)  # type: ignore[arg-type]
+
     def _textures(
         self, state: CloudsState, baked: Baked, arrays: Mapping[str, Arrays], keys: tuple[str, ...]
     ) -> dict[str, AnyTexture]:
@@ -232,10 +240,10 @@ class CloudsRenderer:
             ("horizon", baked["land"].key, azimuth, tops),
             lambda: horizon_texture(self._gl, arrays["land"], azimuth, tops),
         )
-        side = cloud_side(state)
+        fields = baked["fields"].key
         held |= self._moment.get(
-            ("map", baked["fields"].key, state.clouds, state.time if moves(state) else 0.0),
-            lambda: moment_map(self._gl, state.clouds, arrays["fields"], side, state.time),
+            ("map", fields, state.clouds, state.time if moves(state) else 0.0),
+            lambda: self._map(state, fields, arrays["fields"]),
         )
         for slot, technique in state.techniques().items():
 
