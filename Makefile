@@ -15,8 +15,9 @@ help: ## Say what each command does
 run: setup ## Serve the viewer and print its address (ARGS="--port 9000" and the like go to it)
 	$(BIN)/umbrage serve $(ARGS)
 
-test: lint ## Lint, types and tests
-	$(BIN)/python -m pytest $(ARGS)
+# Two processes: one computes while the other waits for a browser, a worker or the compiler.
+test: lint ## Lint, types and tests (ARGS go to pytest: "-k name", "-n 0" for one process)
+	$(BIN)/python -m pytest -n auto --maxprocesses 2 --no-loadscope-reorder $(ARGS)
 
 lint: setup-test ## Lint and types
 	$(BIN)/ruff check .

@@ -11,14 +11,37 @@ from typing import Any
 
 import numpy as np
 import pytest
+from xdist.scheduler import LoadScopeScheduling
 
 # Set before any test module is imported, so that worker processes inherit it too.
 os.environ.setdefault("UMBRAGE_CACHE", str(Path(tempfile.gettempdir()) / f"umbrage-tests-{os.getuid()}"))
+
+# Processes that share the tests have a core each; in each, Mesa's rasteriser would start a thread for every core.
+if "PYTEST_XDIST_WORKER" in os.environ:
+    os.environ.setdefault("LP_NUM_THREADS", "1")
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     """What only some tests read must be known before any is found."""
     parser.addoption("--regenerate", action="store_true", help="put what was found in the place of frozen references")
+
+
+class ByFile(LoadScopeScheduling):
+    """Hands whole files to the processes among which `make test` shares the tests, in the order of their names.
+
+    Those of the browser, the first and longest, stay together: they share a server and a browser, and one process can
+    wait for these while another computes.
+    """
+
+    def _split_scope(self, nodeid: str) -> str:
+        """What is handed over at once."""
+        return "browser" if nodeid.startswith("tests/browser/") else nodeid.split("::", 1)[0]
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> ByFile:
+    """Asked where tests run in several processes."""
+    return ByFile(config, log)
 
 
 @pytest.fixture(autouse=True)

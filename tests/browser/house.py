@@ -18,6 +18,8 @@ from typing import Any
 import uvicorn
 from playwright.sync_api import Browser, Page, Playwright
 
+from renderer.core.baking import gather
+from renderer.core.registry import phenomenon
 from renderer.session import Session
 from server.app import create_app
 from server.settings import Settings
@@ -82,8 +84,13 @@ class Service:
 
 @contextlib.contextmanager
 def service() -> Iterator[Service]:
-    """A server that is stopped, with its session, at the end; it has no study but the one that the project keeps."""
+    """A server that is stopped, with its session, at the end; it has no study but the one that the project keeps.
+
+    The default scene is baked here first: a worker process yields to whatever else computes, as other tests may.
+    """
     with Session() as session, tempfile.TemporaryDirectory() as empty:
+        for _ in gather(phenomenon("forest").bakes(session.state("forest")), session.cache):
+            pass
         served = Service(session, empty)
         served.start()
         try:

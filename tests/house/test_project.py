@@ -25,7 +25,7 @@ THROUGH = {
 
 MODULES = {
     "pillow": "PIL", "openexr": "OpenEXR", "prometheus-client": "prometheus_client", "flip-evaluator": "flip_evaluator",
-    "axe-playwright-python": "axe_playwright_python", "pywavelets": "pywt",
+    "axe-playwright-python": "axe_playwright_python", "pywavelets": "pywt", "pytest-xdist": "xdist",
 }
 """Names of modules that are not their distribution's."""
 
