@@ -205,8 +205,10 @@ def facing_directions(direction: np.ndarray, vertices: np.ndarray, faces: np.nda
         reach = np.einsum("vk,vk->v", way, -point) / np.maximum(np.einsum("vk,vk->v", way, way), 1e-300)
         point = point + np.where(low, np.clip(reach, 0, 1), 0)[:, None] * way
         now, face = faced(point)
-        better = low & (now > best)
-        found[better] = point[better] / np.linalg.norm(point[better], axis=1, keepdims=True)
+        size = np.linalg.norm(point, axis=1)
+        # At 0 no direction is left: the normals look all ways.
+        better = low & (now > best) & (size > 1e-9)
+        found[better] = point[better] / size[better, None]
         best = np.where(better, now, best)
     return found, best > start
 

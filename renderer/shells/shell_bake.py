@@ -7,23 +7,23 @@ from typing import Any
 
 import numpy as np
 from pydantic import TypeAdapter
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 
 from renderer.core.technique import Arrays, Bake
 from renderer.shells.extrusion import Extruded, Extrusion, extrude
-from renderer.shells.shell import Edges, Shell, build_shell
+from renderer.shells.shell import LOWER, SIDES, Edges, Shell, build_shell
 from renderer.shells.surfaces import surface_of
 
 GEOMETRY = ("positions", "tets", "texture", "planes", "to_texture", "neighbour", "signs", "volumes", "flat_uv")
 """Arrays of a `Shell`, kept under their names."""
-
-COUNTS = ("open_edges", "crowded_edges", "turned_edges")
 
 _EXTRUSION = TypeAdapter(Extrusion)
 
 
 def shell_bake(extrusion: Extrusion, surface: Bake) -> Bake:
     """The shell over a baked surface."""
-    return Bake("shell", bake_shell, extrusion.model_dump(mode="json"), (surface,), seconds=1)
+    return Bake("shell", bake_shell, extrusion.model_dump(mode="json"), (surface,), version=2, seconds=1)
 
 
 def bake_shell(arguments: dict[str, Any], inputs: dict[str, Arrays], progress: Callable[[float, str], None]) -> Arrays:
@@ -34,7 +34,8 @@ def bake_shell(arguments: dict[str, Any], inputs: dict[str, Arrays], progress: C
         inputs: `surface`, as `bake_surface` gives it.
 
     Returns:
-        the arrays of `Shell` by their names; `counts` (3,) int64, open, crowded and turned edges; and where it fits:
+        the arrays of `Shell` by their names; `counts` (4,) int64, open, crowded and turned edges and pinched vertices;
+        and where it fits:
         `share` (V,) of its wanted length that each vertex keeps, `wanted` (V,) that length [m], `turned` (V,) bool
         whose direction was turned, `inverted` (N,) and `overlaps` (M, 2) prisms in conflict, `inverted_before` and
         `overlaps_before` those before clamping, `own_overlaps` (K, 2) those that no thickness removes.
@@ -54,7 +55,7 @@ def shell_arrays(shell: Shell, extruded: Extruded) -> dict[str, np.ndarray]:
     clamped = extruded.clamped
     return {
         **{name: getattr(shell, name) for name in GEOMETRY},
-        "counts": np.array([shell.edges.open, shell.edges.crowded, shell.edges.turned]),
+        "counts": np.array([shell.edges.open, shell.edges.crowded, shell.edges.turned, pinched_vertices(shell)]),
         "share": clamped.share,
         "wanted": extruded.length,
         "turned": extruded.turned,
@@ -66,9 +67,30 @@ def shell_arrays(shell: Shell, extruded: Extruded) -> dict[str, np.ndarray]:
     }
 
 
+def pinched_vertices(shell: Shell) -> int:
+    """How many vertices of the base join several fans of triangles, which share that vertex and no edge there."""
+    # Each fan around a vertex is what its corners are linked to across edges.
+    base = shell.tets[0::3, :3]
+    prisms = np.arange(len(base))
+    links = []
+    for side, (cell, corner) in zip(SIDES, LOWER):
+        across = shell.neighbour[cell::3, corner]
+        here = prisms[across >= 0]
+        there = across[across >= 0] // 3
+        for own in side:
+            at = (base[there] == base[here, own][:, None]).argmax(axis=1)
+            links.append(np.stack([3 * here + own, 3 * there + at], axis=1))
+    pairs = np.concatenate(links)
+    graph = coo_array((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(base.size, base.size))
+    _, fan = connected_components(graph, directed=False)
+    vertex = np.unique(np.stack([base.ravel(), fan], axis=1), axis=0)[:, 0]
+    return int((np.bincount(vertex) > 1).sum())
+
+
 def shell_of(arrays: Arrays) -> Shell:
     """The shell from what `bake_shell` gave."""
-    return Shell(**{name: arrays[name] for name in GEOMETRY}, edges=Edges(*(int(count) for count in arrays["counts"])))
+    edges = Edges(*(int(count) for count in arrays["counts"][:3]))
+    return Shell(**{name: arrays[name] for name in GEOMETRY}, edges=edges)
 
 
 def conflicting(arrays: Arrays) -> np.ndarray:
@@ -81,12 +103,12 @@ def shell_facts(arrays: Arrays) -> dict[str, int | float]:
 
     Returns:
         counts of triangles, tetrahedra, vertices; of edges that are open, crowded (three triangles or more) or turned
-        (two that disagree on their front); of triangles with flat texture coordinates; of prisms inside out and pairs
-        of prisms that overlap, before and after clamping; of vertices clamped and turned; the least share kept; the
-        volume [m3]; bytes of the geometry.
+        (two that disagree on their front); of pinched vertices, whose triangles no edges join; of triangles with flat
+        texture coordinates; of prisms inside out and pairs of prisms that overlap, before and after clamping; of
+        vertices clamped and turned; the least share kept; the volume [m3]; bytes of the geometry.
     """
     share = arrays["share"]
-    opened, crowded, turned = (int(count) for count in arrays["counts"])
+    opened, crowded, turned, pinched = (int(count) for count in arrays["counts"])
     return {
         "triangles": len(arrays["tets"]) // 3,
         "tetrahedra": len(arrays["tets"]),
@@ -94,6 +116,7 @@ def shell_facts(arrays: Arrays) -> dict[str, int | float]:
         "open_edges": opened,
         "crowded_edges": crowded,
         "turned_edges": turned,
+        "pinched_vertices": pinched,
         "flat_uv": len(arrays["flat_uv"]),
         "inverted_before": len(arrays["inverted_before"]),
         "overlaps_before": len(arrays["overlaps_before"]),
@@ -113,6 +136,7 @@ def shell_words(facts: dict[str, int | float]) -> list[str]:
     plain = (
         ("crowded_edges", "edge joins more than two triangles", "edges join more than two triangles"),
         ("turned_edges", "edge has triangles that disagree on their front", "edges have triangles that disagree"),
+        ("pinched_vertices", "vertex joins parts that share no edge", "vertices join parts that share no edge"),
         ("flat_uv", "triangle has texture coordinates without area", "triangles have texture coordinates without area"),
         ("clamped_vertices", "vertex has a shorter offset", "vertices have shorter offsets"),
         ("inverted", "prism is inside out", "prisms are inside out"),

@@ -12,7 +12,7 @@ from renderer.core.cache import AssetStore
 from renderer.core.errors import AssetError
 from renderer.core.params import bake_arguments
 from renderer.core.technique import Bake
-from renderer.shells.base_mesh import vertex_normals
+from renderer.shells.base_mesh import BaseMesh, from_corners, vertex_normals
 from renderer.shells.extrusion import (
     Dab,
     EvenThickness,
@@ -24,9 +24,17 @@ from renderer.shells.extrusion import (
     noise,
 )
 from renderer.shells.shell import build_shell
-from renderer.shells.shell_bake import bake_shell, conflicting, shell_bake, shell_facts, shell_of, shell_words
+from renderer.shells.shell_bake import (
+    bake_shell,
+    conflicting,
+    pinched_vertices,
+    shell_bake,
+    shell_facts,
+    shell_of,
+    shell_words,
+)
 from renderer.shells.surfaces import Mushroom, Plane, Sphere, bake_surface
-from tests.shells.meshes import smeared
+from tests.shells.meshes import hourglass, smeared
 
 
 def test_offsets_follow_the_direction_asked_for() -> None:
@@ -132,3 +140,27 @@ def test_flat_texture_coordinates_are_told() -> None:
     arguments = bake_arguments(Extrusion(relief=EvenThickness()))
     facts = shell_facts(bake_shell(arguments, {"surface": base}, lambda *_: None))
     assert shell_words(facts) == ["16 triangles have texture coordinates without area"]
+
+
+def test_a_pinched_surface_is_told() -> None:
+    def pinched(mesh: BaseMesh) -> int:
+        return pinched_vertices(build_shell(mesh, 0.01 * vertex_normals(mesh.vertices, mesh.faces)))
+
+    assert pinched(hourglass()) == 1
+    assert pinched(Sphere(divisions=3).mesh()) == pinched(Plane().mesh()) == 0
+
+
+def test_any_triangles_give_a_shell_in_finite_numbers() -> None:
+    """Soups of triangles, with corners that fall together, slivers and flat texture coordinates; a prism is sound or
+    told."""
+    rng = np.random.default_rng(8)
+    for number in range(12):
+        places = rng.normal(size=(20, 3)) * ((1, 1, 1), (1, 1, 0), (1, 1e-9, 1e-9))[number % 3]
+        uv = rng.normal(size=(40, 3, 2)) * (rng.random((40, 1, 1)) > 0.2)
+        mesh = from_corners(places[rng.integers(0, 20, (40, 3))], uv, tolerance=1e-9 * (number % 2))
+        found = extrude(mesh, Extrusion(thickness=(0.05, 3.0)[number % 2], relief=NoisyThickness()))
+        shell = build_shell(mesh, found.offset)
+        for array in (shell.planes, shell.to_texture, shell.volumes):
+            assert np.isfinite(array).all()
+        unsound = np.flatnonzero((shell.volumes.reshape(-1, 3) <= 0).any(axis=1))
+        assert np.isin(unsound, found.clamped.left.inverted).all()
