@@ -67,7 +67,9 @@ class Cells:
         program = self._gl.programs.get(_vertex(), fragment)
         bind_textures(program, textures)
         set_uniforms(program, values)
-        array = self._gl.ctx.vertex_array(program, [(self._vertices, "3f 1f", "position", "owner")], self._indices)
+        # A stage that only counts reads no number, and its compiler leaves it out.
+        read = ("3f 1f", "position", "owner") if "owner" in program else ("3f 4x", "position")
+        array = self._gl.ctx.vertex_array(program, [(self._vertices, *read)], self._indices)
         try:
             array.render(mode=moderngl.TRIANGLES)
         finally:

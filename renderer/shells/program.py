@@ -138,12 +138,20 @@ def chosen(state: ShellsState, slots: tuple[str, ...]) -> Chosen:
 
 
 @functools.lru_cache(maxsize=256)
-def composed(techniques: Chosen, variant: Variant, after: tuple[str, ...], body: str, more: str = "") -> Source:
+def composed(
+    techniques: Chosen,
+    variant: Variant,
+    after: tuple[str, ...],
+    body: str,
+    more: str = "",
+    version: tuple[int, int] = (3, 3),
+) -> Source:
     """A fragment stage.
 
     Args:
         techniques: in the order in which their functions build on each other.
         after: files after them. body: `main`. more: declarations of the stage's own.
+        version: of OpenGL, at least.
     """
     files = [*FIRST]
     declarations = [world_declarations(), more]
@@ -157,7 +165,7 @@ def composed(techniques: Chosen, variant: Variant, after: tuple[str, ...], body:
         files.append(glsl_file("shells", slot, technique.model_fields["kind"].default))
         declarations += technique_declarations(slot, technique)
         macros.update(build)
-    version = max([(3, 3), *(technique.requires for _, technique, _ in techniques)])
+    version = max([version, *(technique.requires for _, technique, _ in techniques)])
     return assemble(
         [*files, *after],
         version=version,

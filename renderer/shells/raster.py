@@ -73,7 +73,7 @@ class Canvas:
 
     Attributes:
         gathered: the picture's light and opacity, in the type that the slot `accumulation` names.
-        base: light of the opaque surface, with its distance [m], or 0.
+        base: light of the opaque surface, with its distance [m], or 0. depth: that of the surface.
     """
 
     def __init__(self, gl: GL, size: tuple[int, int], dtype: str) -> None:
@@ -82,13 +82,13 @@ class Canvas:
         self.base = gl.ctx.texture(size, 4, dtype="f4")
         for texture in (self.gathered, self.base):
             texture.filter = moderngl.NEAREST, moderngl.NEAREST
-        self._depth = gl.ctx.depth_renderbuffer(size)
-        self.into_gathered = gl.ctx.framebuffer([self.gathered], self._depth)
-        self.into_base = gl.ctx.framebuffer([self.base], self._depth)
+        self.depth = gl.ctx.depth_renderbuffer(size)
+        self.into_gathered = gl.ctx.framebuffer([self.gathered], self.depth)
+        self.into_base = gl.ctx.framebuffer([self.base], self.depth)
 
     def release(self) -> None:
         """Free it."""
-        for held in (self.into_gathered, self.into_base, self.gathered, self.base, self._depth):
+        for held in (self.into_gathered, self.into_base, self.gathered, self.base, self.depth):
             held.release()
 
 
@@ -174,7 +174,8 @@ def gather_source(state: ShellsState) -> Source:
 
 def base_source(state: ShellsState) -> Source:
     """The fragment stage that lights the opaque surface."""
-    return lit_source(state, BASE_BODY)
+    techniques = chosen(state, ("filter", "shadow", "light"))
+    return composed(techniques, variant_of(state), ("shells/base.glsl",), BASE_BODY)
 
 
 def lit_source(state: ShellsState, body: str, more: str = "") -> Source:
