@@ -1,0 +1,50 @@
+"""A scene in motion: the same at a moment whatever came before, and only what changed is named."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from renderer.core.params import bake_arguments
+from renderer.core.technique import BakedArrays
+from renderer.shells.animation import MOVING, Bend, Bump, Still
+from renderer.shells.animation_scene import Animator, moment
+from renderer.shells.extrusion import Extrusion
+from renderer.shells.shell_bake import bake_shell
+from renderer.shells.surfaces import Sphere, bake_surface
+
+EXTRUSION = Extrusion(thickness=0.05)
+SURFACE = bake_surface(bake_arguments(Sphere(divisions=6)), {}, lambda *_: None)
+SHELL = bake_shell(bake_arguments(EXTRUSION), {"surface": SURFACE}, lambda *_: None)
+BAKED = BakedArrays("surface", SURFACE), BakedArrays("shell", SHELL)
+
+
+def test_a_moment_does_not_depend_on_those_before() -> None:
+    animator = Animator()
+    for motion, time in ((Bump(), 0.3), (Bump(), 0.4), (Bend(), 1.0), (Bump(), 0.5)):
+        followed = animator.at(*BAKED, EXTRUSION, motion, time)
+        alone = moment(SURFACE, SHELL, EXTRUSION, motion, time)
+        for name in MOVING:
+            np.testing.assert_array_equal(followed.shell[name], alone.shell[name])
+        for name in ("vertices", "normals"):
+            np.testing.assert_array_equal(followed.surface[name], alone.surface[name])
+
+
+def test_what_changed_is_named_and_nothing_is_done_twice() -> None:
+    animator = Animator()
+    first = animator.at(*BAKED, EXTRUSION, Bump(), 0.3)
+    assert first.changed is None, "of the first moment all may be new"
+    again = animator.at(*BAKED, EXTRUSION, Bump(), 0.3)
+    assert again is first
+    later = animator.at(*BAKED, EXTRUSION, Bump(), 0.4)
+    assert later.changed is not None
+    assert 0 < len(later.changed) < 0.4 * len(SHELL["tets"])
+    differs = (later.shell["planes"] != first.shell["planes"]).any(axis=(1, 2))
+    assert np.isin(np.flatnonzero(differs), later.changed).all()
+    assert len({first.key, later.key}) == 2
+
+
+def test_what_stands_still_is_the_bake_itself() -> None:
+    still = Animator().at(*BAKED, EXTRUSION, Still(), 7.0)
+    assert still.shell is SHELL
+    assert still.key == "shell"
+    assert moment(SURFACE, SHELL, EXTRUSION, Still(), 7.0).surface is SURFACE
