@@ -20,7 +20,10 @@ Stretch stretch_of(Path path, vec3 origin, vec3 direction, int leg, vec2 nominal
     float t = clamp(middle.x > middle.y ? -path.along : leg == 0 ? middle.x : middle.y, nominal.x, nominal.x + nominal.y);
     vec3 point = origin + t * direction;
     float cosine = dot(direction, up_at(point));
-    Cover cover = cover_seen(place_of(point), footprint * t / clamp(abs(cosine), 0.1, 1.0));
+    // A quarter and four fifths of the layer's mean height: what lies below its half, and above it, is looked for there.
+    float climb = sign(cosine) * layer_thickness / max(abs(cosine), 0.05);
+    vec2 lower = place_of(point - 0.25 * climb * direction), upper = place_of(point + 0.3 * climb * direction);
+    Cover cover = cover_through(lower, upper, footprint * t, inversesqrt(clamp(abs(cosine), 0.1, 1.0)));
     float thickness = max(cover.thickness, 1.0e-3);
     float within = geometry_leg(path, leg, layer_base, thickness, cosine, end);
     float whole = geometry_slant(abs(cosine), layer_base, thickness);

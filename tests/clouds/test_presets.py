@@ -144,6 +144,17 @@ def test_clouds_shade_the_valley(shown: Shown) -> None:
     assert 0.1 < (darker < 0.7).mean() < 0.5, "patches of shadow, no more and no less"
 
 
+def test_gaps_that_are_wide_enough_to_be_seen_stay_open_far_away(shown: Shown, spoil: Callable) -> None:
+    def blue(time: float) -> float:
+        sky = shown("valley", time=time)[1][:10]
+        return float((sky[..., 2] > 1.3 * sky[..., 0]).mean())
+
+    assert blue(0.0) > 0.12
+    right, wrong = "footprint * t, inversesqrt", "footprint * t / max(abs(cosine), 0.1), inversesqrt"
+    with spoil("clouds/stretch.glsl", right, wrong):
+        assert blue(1.0) < 0.09, "a second later, as what was traced at the first moment is kept"
+
+
 def test_summits_stand_in_the_sun_above_the_layer(shown: Shown) -> None:
     _, above = shown("sea_of_clouds")
     _, under = shown("sea_of_clouds", layer={"base": 3500.0})
