@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from renderer.shells.base_mesh import BaseMesh, flat_uv
+from renderer.shells.shell_kernels import cells
 
 TOP, BASE, RIM = -1, -2, -3
 """What lies across a tetrahedron's face where no other one does: outside above, the surface, the side of an edge."""
@@ -157,40 +158,10 @@ def cell_geometry(
         the corners as they stand, 0 for a flat cell. A flat cell's map is its middle, everywhere; a face without
         area has the plane 0.
     """
-    points = positions[tets]
-    planes = np.empty((len(tets), 4, 4))
-    gradients = np.empty((len(tets), 4, 3))
-    edges = points[:, 1:] - points[:, :1]
-    longest = np.maximum((edges**2).sum(axis=2).max(axis=1), 1e-300) ** 1.5
-    determinant = np.einsum("nk,nk->n", edges[:, 0], _cross(edges[:, 1], edges[:, 2]))
-    flat = np.abs(determinant) <= 6 * FLAT * longest
-    for k in range(4):
-        # In rising order of vertices, which both owners of a face share: their planes differ in sign alone.
-        a, b, c = (points[:, corner] for corner in range(4) if corner != k)
-        normal = _cross(b - a, c - a)
-        height = np.einsum("nk,nk->n", normal, points[:, k] - a)
-        length = np.sqrt(np.einsum("nk,nk->n", normal, normal))
-        unit = normal / np.where(length > 0, length, 1)[:, None]
-        outwards = np.where(height > 0, -1.0, 1.0)
-        planes[:, k, :3] = unit * outwards[:, None]
-        planes[:, k, 3] = -np.einsum("nk,nk->n", unit, a) * outwards
-        gradients[:, k] = normal / np.where(flat, 1, height)[:, None]
-    rise = texture[:, 1:] - texture[:, :1]
-    to_texture = np.empty((len(tets), 3, 4))
-    to_texture[..., :3] = np.matmul(rise.transpose(0, 2, 1), gradients[:, 1:])
-    to_texture[flat, :, :3] = 0
-    origin = np.where(flat[:, None], texture.mean(axis=1), texture[:, 0])
-    to_texture[..., 3] = origin - np.matmul(to_texture[..., :3], points[:, 0, :, None])[..., 0]
-    return planes, to_texture, np.where(flat, 0.0, determinant / 6)
-
-
-def _cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """Cross products of (N, 3); a third of the time that numpy's own takes."""
-    product = np.empty_like(a)
-    product[:, 0] = a[:, 1] * b[:, 2] - a[:, 2] * b[:, 1]
-    product[:, 1] = a[:, 2] * b[:, 0] - a[:, 0] * b[:, 2]
-    product[:, 2] = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
-    return product
+    planes, to_texture = np.empty((len(tets), 4, 4)), np.empty((len(tets), 3, 4))
+    volumes = np.empty(len(tets))
+    cells(positions, tets, texture, FLAT, planes, to_texture, volumes)
+    return planes, to_texture, volumes
 
 
 def _neighbours(lower: np.ndarray, turn: np.ndarray, count: int) -> tuple[np.ndarray, Edges]:
