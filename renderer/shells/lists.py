@@ -17,7 +17,7 @@ from renderer.gl.targets import run_fullscreen
 from renderer.shells.cells import Cells, facing
 from renderer.shells.program import composed, variant_of
 from renderer.shells.raster import CELL_DECLARATIONS, Canvas, lit_source, placed_values, switched
-from renderer.world.camera import Orthographic, pose
+from renderer.shells.window import nearest_first
 
 if TYPE_CHECKING:
     from renderer.shells.frame import Frame
@@ -100,15 +100,6 @@ def draw_lists(frame: Frame, cells: Cells, canvas: Canvas, most: int) -> tuple[i
         for buffer in held:
             buffer.release()
     return total, int(lengths.max(initial=0))
-
-
-def nearest_first(frame: Frame) -> np.ndarray:
-    """Cells by the distance of their middles, (T,): lists that come almost sorted are sorted soon."""
-    shell, camera = frame.arrays["shell"], frame.state.camera
-    middles, at = shell["positions"][shell["tets"]].mean(axis=1), pose(camera)
-    if isinstance(camera, Orthographic):
-        return np.argsort(middles @ at.forward)
-    return np.argsort(((middles - at.eye) ** 2).sum(axis=1))
 
 
 def counted(frame: Frame, cells: Cells, canvas: Canvas, values: dict[str, Any]) -> np.ndarray:
