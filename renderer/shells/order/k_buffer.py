@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 class KBuffer(OrderTechnique):
     """Cells roughly sorted on the CPU, and put right in each pixel as far as they are at most k places out of order.
 
-    Two triangles of a pixel must not be drawn at once, which software rendering keeps to; elsewhere a race may lose one.
+    Two triangles of a pixel must not be drawn at once: software rendering keeps to that, elsewhere a race may lose one.
     """
 
     title: ClassVar[str] = "K-buffer"
