@@ -139,7 +139,7 @@ def _parse(data: bytes) -> np.ndarray:
 
 
 SUFFIXES = (".csv", ".exr", ".glb", ".gltf", ".hdr", ".jpeg", ".jpg", ".json", ".npy", ".npz", ".obj", ".off", ".ply",
-            ".png", ".stl", ".tif", ".tiff")
+            ".png", ".stl", ".tif", ".tiff", ".zip")
 """Endings of the files that some loader reads. Only these become part of a stored file's name."""
 
 

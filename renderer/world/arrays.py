@@ -26,10 +26,15 @@ MAX_HEADER = 4096
 
 
 def npz_names(path: Path) -> list[str]:
-    """Names of the arrays in the archive at `path`.
+    """Names of the arrays in the archive at `path`; raises as `archive_names`."""
+    return [name.removesuffix(".npy") for name in archive_names(path) if name.endswith(".npy")]
+
+
+def archive_names(path: Path) -> list[str]:
+    """Names of the members of the archive at `path`.
 
     Raises:
-        AssetError: not a zip archive, or one with more members than an .npz of ours can have.
+        AssetError: not a zip archive, or one with more members than an archive of ours can have.
     """
     try:
         _check_directory(path)
@@ -39,7 +44,7 @@ def npz_names(path: Path) -> list[str]:
         raise AssetError("file", "is no complete .npz archive") from failure
     if len(names) > MAX_MEMBERS:
         raise AssetError("file", f"holds {len(names)} members", f"at most {MAX_MEMBERS}")
-    return [name.removesuffix(".npy") for name in names if name.endswith(".npy")]
+    return names
 
 
 def _check_directory(path: Path) -> None:

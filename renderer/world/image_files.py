@@ -53,10 +53,7 @@ def load_image(path: Path, limits: Limits = DEFAULT_LIMITS, colour: Colour = "sr
     """
     pixels = load_codes(path, limits)
     if pixels.dtype.kind != "f":
-        pixels = pixels.astype(np.float64) / np.iinfo(pixels.dtype).max
-        if colour == "srgb":
-            pixels = _decode_colours(pixels)
-        pixels = _rgba(pixels)
+        pixels = straight_of(pixels, colour)
         pixels[..., :3] *= pixels[..., 3:]
     with np.errstate(over="ignore"):  # float64 beyond float32 becomes infinite, and is refused as such
         result = _rgba(pixels)
@@ -78,10 +75,21 @@ def load_codes(path: Path, limits: Limits = DEFAULT_LIMITS) -> NDArray:
         data = path.read_bytes()
     except OSError as failure:
         raise AssetError("file", "cannot be read") from failure
+    return codes_of(data, limits)
+
+
+def codes_of(data: bytes, limits: Limits = DEFAULT_LIMITS) -> NDArray:
+    """The same of a file's bytes."""
     kind = next((name for magic, name in MAGIC if data.startswith(magic)), None)
     if kind is None:
         raise AssetError("file", "is no picture of a known format", "PNG, JPEG, Radiance HDR, OpenEXR, .npy")
     return _READERS[kind](data, limits)
+
+
+def straight_of(codes: NDArray, colour: Colour = "srgb") -> NDArray[np.float32]:
+    """Linear straight colour and alpha, (height, width, 4), of the codes of a PNG or JPEG picture."""
+    pixels = codes.astype(np.float64) / np.iinfo(codes.dtype).max
+    return _rgba(_decode_colours(pixels) if colour == "srgb" else pixels)
 
 
 def _decode_colours(pixels: NDArray) -> NDArray:

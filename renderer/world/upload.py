@@ -21,13 +21,14 @@ from renderer.world.maps import QUANTITIES
 from renderer.world.mesh_formats import FORMATS as MESH_FORMATS
 from renderer.world.mesh_formats import mesh_format
 from renderer.world.terrain_files import png_header, terrain_format
+from renderer.world.volume_stack import stack_names
 
 Kind = Literal["terrain", "mesh", "volume", "image", "map"]
 """What files are read as; each kind has a loader in this package."""
 
 READ = (
-    f"a terrain (GeoTIFF, 16-bit grey PNG, .npz with elevation), a mesh ({MESH_FORMATS}), a volume (.npz with rgba), "
-    f"a map (.npz with {', '.join(QUANTITIES)}), "
+    f"a terrain (GeoTIFF, 16-bit grey PNG, .npz with elevation), a mesh ({MESH_FORMATS}), a volume (.npz with rgba, or "
+    f"a .zip of PNG layers), a map (.npz with {', '.join(QUANTITIES)}), "
     "or a picture (PNG, JPEG, HDR, EXR, .npy)"
 )
 
@@ -73,6 +74,8 @@ def recognise(path: Path, filename: str = "", limits: Limits = DEFAULT_LIMITS) -
             return "terrain" if "elevation" in names else "volume"
         if any(name in names for name in QUANTITIES):
             return "map"
+        if stack_names(path):
+            return "volume"
         held = ", ".join(name[:40] for name in names[:5]) or "none"
         raise AssetError("file", f"is an archive with the arrays: {held}", WANTED)
     if any(head.startswith(magic) for magic, _ in MAGIC):

@@ -16,6 +16,7 @@ from renderer.core.errors import AssetError, LimitError
 from renderer.core.params import Model, Vector3, param
 from renderer.world.arrays import npz_names, read_npz
 from renderer.world.limits import DEFAULT_LIMITS, Limits, Unsaid, check_file
+from renderer.world.volume_stack import load_stack, stack_names
 
 Association = Literal["file", "straight", "associated"]
 
@@ -83,7 +84,7 @@ class Volume:
 
 
 def load_volume(path: Path, limits: Limits = DEFAULT_LIMITS, reading: VolumeReading | None = None) -> Volume:
-    """Read a volume from an .npz with `rgba` [z, y, x, 4].
+    """Read a volume from an .npz with `rgba` [z, y, x, 4], or from a .zip of pictures (see `load_stack`).
 
     Integers are shares of their type's largest value, floats are taken as they are. The file may also hold `alpha`
     ("straight" or "associated"), `reference_length` (metres) and `size` (x, y, z, metres); `reading` overrides them.
@@ -100,11 +101,17 @@ def load_volume(path: Path, limits: Limits = DEFAULT_LIMITS, reading: VolumeRead
     reading = reading or VolumeReading()
     if check_file(path, limits)[:4] != b"PK\x03\x04":
         raise AssetError("file", "is no volume that can be read", ".npz with rgba [z, y, x, 4]")
-    if "rgba" not in npz_names(path):
-        raise AssetError("rgba", "is not among the arrays of the file", "rgba [z, y, x, 4]")
-    data = read_npz(path, ("rgba", "alpha", "reference_length", "size"), limits.voxels * 4 * 8)
-    rgba = _shares(data["rgba"], limits)
+    said: tuple[str, ...] = ()
+    if stack_names(path):
+        rgba, said = load_stack(path, limits)
+        data = {"alpha": np.array("straight")}
+    elif "rgba" in npz_names(path):
+        data = read_npz(path, ("rgba", "alpha", "reference_length", "size"), limits.voxels * 4 * 8)
+        rgba = _shares(data["rgba"], limits)
+    else:
+        raise AssetError("rgba", "is not among the arrays of the file", "rgba [z, y, x, 4], or a .zip of PNG pictures")
     associated, notes = _association(data, reading)
+    notes = (*said, *notes)
     length = _length(data, reading)
     size = _size(data, reading, rgba.shape, length)
     if associated:
