@@ -34,7 +34,7 @@ SLOTS = (
         "Light",
         "How matter answers the light.",
         "vec3 light_source(Ray ray, float distance, vec3 place, float level, Matter matter, mat3 gradients); "
-        "vec3 light_base(vec3 point, vec3 normal, vec3 colour) // W m-2 sr-1",
+        "vec3 light_base(vec3 point, vec3 normal, bool sunlit, vec3 colour) // W m-2 sr-1",
         DEFAULTS["light"],
     ),
     Slot(

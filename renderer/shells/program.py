@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 INTERPOLATIONS = ("NEAREST", "STRAIGHT", "EXTINCTION")
 
 WORLD_DECLARATIONS = """uniform sampler2D shell_tets;
+uniform sampler2D shell_base;
 uniform sampler3D shell_matter;
 uniform sampler3D shell_normal;
 uniform sampler2D entry_even;     // distance, m, and tetrahedron where rays come in: layers 0, 2, ...

@@ -81,6 +81,7 @@ class ShellsRenderer:
             values |= uniforms(technique, slot) | technique.constants(state, arrays)
         textures: dict[str, AnyTexture] = {
             "shell_tets": objects["shell_tets"],
+            "shell_base": objects["shell_base"],
             "shell_matter": texture.matter,
             "shell_normal": texture.normal,
             **self._sky_view(state, baked),

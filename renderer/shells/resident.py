@@ -10,6 +10,7 @@ import numpy as np
 from renderer.core.technique import Arrays
 from renderer.gl.context import GL
 from renderer.gl.meshes import Triangles
+from renderer.shells.base_mesh import vertex_normals
 from renderer.shells.world_scale import BASE, TET_ROW, TET_TEXELS
 
 
@@ -47,6 +48,21 @@ def tet_texels(shell: Arrays, centre: np.ndarray) -> np.ndarray:
     return texels.reshape(rows, TET_ROW * TET_TEXELS, 4)
 
 
+def base_texels(shell: Arrays) -> np.ndarray:
+    """(rows, `TET_ROW` * 3, 4) float32 as `shaders/shells/base.glsl` reads it: the surface's smooth normals."""
+    first, planes = shell["tets"][::3], shell["planes"][::3]
+    faces, vertices = first[:, :3].copy(), shell["positions"][: len(shell["positions"]) // 2]
+    flat = np.cross(vertices[faces[:, 1]] - vertices[faces[:, 0]], vertices[faces[:, 2]] - vertices[faces[:, 0]])
+    turned = np.einsum("fi,fi->f", flat, planes[:, 3, :3]) > 0  # the shell ends there: its plane looks down
+    faces[turned] = faces[turned][:, [0, 2, 1]]
+    normals = vertex_normals(vertices, faces)[first[:, :3]]
+    away = np.einsum("fki,fki->fk", planes[:, :3, :3], vertices[first[:, :3]]) + planes[:, :3, 3]
+    rows = -(-max(len(first), 1) // TET_ROW)
+    texels = np.zeros((rows * TET_ROW, 3, 4), np.float32)
+    texels[: len(first), :, :3] = normals / np.where(away == 0, np.inf, away)[..., None]
+    return texels.reshape(rows, TET_ROW * 3, 4)
+
+
 def boundary(shell: Arrays, centre: np.ndarray, base: bool) -> tuple[np.ndarray, np.ndarray]:
     """Faces through which rays come into the shell.
 
@@ -76,5 +92,6 @@ def shell_objects(gl: GL, shell: Arrays, place: Placed, base: bool) -> dict[str,
     """Texture of the tetrahedra, and the triangles through which rays come in."""
     return {
         "shell_tets": gl.texture2d(tet_texels(shell, place.centre), "nearest"),
+        "shell_base": gl.texture2d(base_texels(shell), "nearest"),
         "entries": Triangles(gl, *boundary(shell, place.centre, base)),
     }

@@ -1,7 +1,24 @@
 // The opaque surface under the shell: where a ray meets it, and its light.
+// Symbols: shell_base, of each prism's three vertices on the surface, its normal over the distance from the plane opposite to it
+// (1/m): with the distances of a place from these planes, that is the normal between the vertices.
 
-// tet, face: through which the ray came to it at `t`. Its normal is that of the tetrahedron's face, which points out of the shell.
+const int BASE_ROW = 512; // prisms a row of texels
+
+// Smooth normal of a place on the surface, under the first tetrahedron of a prism.
+vec3 base_normal(int tet, vec3 point) {
+    int prism = tet / 3;
+    vec3 sum = vec3(0.0);
+    for (int k = 0; k < 3; k++) {
+        vec4 plane = tet_texel(tet, k);
+        vec3 normal = texelFetch(shell_base, ivec2((prism % BASE_ROW) * 3 + k, prism / BASE_ROW), 0).xyz;
+        sum += (dot(plane.xyz, point) + plane.w) * normal;
+    }
+    return normalize(sum);
+}
+
+// tet, face: through which the ray came to it at `t`; the face's own normal points out of the shell.
 vec3 base_radiance(Ray ray, int tet, int face, float t) {
-    vec3 normal = -tet_texel(tet, max(face, 0)).xyz;
-    return light_base(ray.origin + t * ray.direction, normal, base_colour);
+    vec3 point = ray.origin + t * ray.direction;
+    bool sunlit = dot(tet_texel(tet, max(face, 0)).xyz, sun_direction) < 0.0;
+    return light_base(point, base_normal(tet, point), sunlit, base_colour);
 }

@@ -14,8 +14,9 @@ vec3 light_source(Ray ray, float distance, vec3 place, float level, Matter matte
     return matter.colour * (arriving / LIGHT_PI + normal.w * voxels_glow);
 }
 
-vec3 light_base(vec3 point, vec3 normal, vec3 colour) {
-    float facing = max(dot(normal, sun_direction), 0.0);
+// sunlit: whether the face itself, not its smooth normal alone, is turned to the sun.
+vec3 light_base(vec3 point, vec3 normal, bool sunlit, vec3 colour) {
+    float facing = sunlit ? max(dot(normal, sun_direction), 0.0) : 0.0;
     vec3 arriving = sun_irradiance * (facing * shadow_visibility(point)) + sky_irradiance * (0.5 * (1.0 + normal.z));
     return colour * arriving / LIGHT_PI;
 }

@@ -6,6 +6,6 @@ vec3 light_source(Ray ray, float distance, vec3 place, float level, Matter matte
     return matter.colour * light_level;
 }
 
-vec3 light_base(vec3 point, vec3 normal, vec3 colour) {
+vec3 light_base(vec3 point, vec3 normal, bool sunlit, vec3 colour) {
     return colour * light_level;
 }

@@ -12,8 +12,11 @@ bool order_walk(Ray ray, int tet, float enter, inout vec4 sum) {
         sampling_segment(ray, tet_segment(ray, tet, enter, exit.t), sum);
         sum = accumulation_kept(sum);
         enter = exit.t;
-        face = exit.face;
-        last = tet;
+        // Chosen, though the answer is known: Mesa's drivers for CPUs take what a loop only sets from its last turn, whichever
+        // pixel of a few that took, and read at once what is read again behind the loop.
+        bool going = steps < ORDER_STEPS;
+        face = going ? exit.face : face;
+        last = going ? tet : last;
         tet = tet_beyond(tet, face);
         steps++;
     } while (tet >= 0 && steps < ORDER_STEPS && sum.a < OPAQUE);

@@ -7,11 +7,18 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
+from renderer.core.baking import bake_now
+from renderer.core.cache import Cache
+from renderer.core.params import validate
+from renderer.shells.bakes import sky_bake
 from renderer.shells.base_mesh import vertex_normals
 from renderer.shells.probe import crossings
 from renderer.shells.shell import build_shell
+from renderer.shells.state import ShellsState
 from renderer.shells.surfaces import Sphere
 from renderer.world.camera import Orbit, rays
+from renderer.world.sky import sky_for
+from renderer.world.sun import SunDirection, direction
 from tests.shells.conftest import even, sigma
 
 Draw = Callable[..., np.ndarray]
@@ -62,6 +69,47 @@ def test_what_is_near_hides_what_is_far(draw: Draw) -> None:
 def test_the_opaque_surface_ends_the_ray(draw: Draw) -> None:
     found = draw({"base": {"opaque": True, "colour": [0.2, 0.4, 0.8]}}, even(0.0))
     assert found[4, 4] == pytest.approx([0.2, 0.4, 0.8, 1.0], abs=1e-5)
+
+
+def base_error(draw: Draw, size: int = 48) -> float:
+    """Worst error of the light of a bare, opaque sphere of facets, whose normals are smooth, in its lit part."""
+    sun = {"kind": "direction", "azimuth": 60.0, "elevation": 50.0}
+    patch = {**GLOBE, "base": {"opaque": True, "colour": [1, 1, 1]}, "light": {"kind": "lambert"}, "sun": sun}
+    found = draw(patch, even(0.0), size=size)[..., 1]
+    mesh = Sphere(radius=0.6, divisions=3).mesh()
+    corners, normals = mesh.vertices[mesh.faces], vertex_normals(mesh.vertices, mesh.faces)[mesh.faces]
+    origins, directions = (part.reshape(-1, 1, 3) for part in rays(Orbit(**GLOBE["camera"]), size, size))
+    edge_a, edge_b = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    flat, from_corner = np.cross(edge_a, edge_b), origins - corners[:, 0]
+    fall = (directions * flat).sum(-1)
+    turned = np.cross(from_corner, directions)
+    v, w = -(edge_b * turned).sum(-1) / fall, (edge_a * turned).sum(-1) / fall
+    met = (v > 0.01) & (w > 0.01) & (v + w < 0.99) & (fall < 0)
+    v, w = (np.where(met, part, 0.0)[..., None] for part in (v, w))
+    smooth = ((1 - v - w) * normals[:, 0] + v * normals[:, 1] + w * normals[:, 2]) * met[..., None]
+    towards = direction(SunDirection(azimuth=60.0, elevation=50.0))
+    lit = met.any(1) & ((met * (flat @ towards)).sum(1) > 0)
+    one = smooth.sum(1)[lit] / np.linalg.norm(smooth.sum(1)[lit], axis=1)[:, None]
+    tables = bake_now(sky_bake(validate(ShellsState, {"scene": "shells"})), Cache())
+    now = sky_for(tables, np.radians(50.0))
+    exact = now.sun_irradiance[1] * np.maximum(one @ towards, 0) + now.sky_irradiance[1] * (1 + one[:, 2]) / 2
+    return float(np.abs(found.reshape(-1)[lit] - exact / np.pi).max() / (exact.max() / np.pi))
+
+
+def test_the_surface_has_the_light_of_its_smooth_normal(draw: Draw) -> None:
+    assert base_error(draw) < 2e-3
+
+
+@pytest.mark.parametrize(
+    ("file", "right", "wrong"),
+    [
+        (FILE, "last = going ? tet : last;", "last = tet + 3;"),
+        ("shells/base.glsl", "return normalize(sum);", "return -tet_texel(tet, 3).xyz;"),
+    ],
+)
+def test_another_cells_normal_is_found(draw: Draw, spoil: Callable, file: str, right: str, wrong: str) -> None:
+    with spoil(file, right, wrong):
+        assert base_error(draw) > 0.01
 
 
 @pytest.mark.parametrize(
