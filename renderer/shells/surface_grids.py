@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from renderer.shells.base_mesh import BaseMesh, from_corners
+from renderer.shells.base_mesh import BaseMesh, from_corners, side_by_side
 
 
 def grid_corners(nodes: np.ndarray, uv: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -125,3 +125,27 @@ def cube_sphere(radius: float, divisions: int, repeat_u: float, repeat_v: float)
         length = np.sqrt(np.sort(nodes * nodes, axis=-1).sum(axis=-1, keepdims=True))
         parts.append(grid_corners(radius * nodes / length, uv))
     return from_corners(np.concatenate([corner for corner, _ in parts]), np.concatenate([at for _, at in parts]))
+
+
+def planks(count: int, radius: float, width: float, tilt: float, along: int, repeat: float) -> BaseMesh:
+    """Planks in a ring, each with one end over the next: seen from above, each hides the next and the last the first.
+
+    Args:
+        count: of planks. radius: of the circle that they touch, m. width: of each, m.
+        tilt: angle by which they rise along the ring, rad. along: cells along each.
+        repeat: how often the texture stands across a plank, and along it in the same proportion.
+    """
+    crossing = radius * math.tan(math.pi / count)
+    length = 2 * crossing + 2 * width
+    share = np.arange(along + 1) / along - 0.5
+    across, ahead = np.meshgrid((np.arange(2) - 0.5) * width, share * length, indexing="ij")
+    # The front is above: x outwards to the right of y ahead would look down, so columns run ahead and rows inwards.
+    uv = grid_uv(1, along, repeat * length / width, repeat)
+    parts = []
+    for number in range(count):
+        turn = 2 * math.pi * number / count
+        out, on = np.array([math.cos(turn), math.sin(turn), 0.0]), np.array([-math.sin(turn), math.cos(turn), 0.0])
+        rise = on * math.cos(tilt) + np.array([0.0, 0.0, math.sin(tilt)])
+        nodes = radius * out - across[..., None] * out + ahead[..., None] * rise
+        parts.append(from_corners(*grid_corners(nodes, uv)))
+    return side_by_side(parts)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import Annotated, Any, Literal
 
@@ -130,6 +131,30 @@ class Mushroom(Model):
         return turned_curve(MUSHROOM, self.height, self.around, self.along, self.repeat_u, self.repeat_v)
 
 
+class Planks(Model):
+    """Planks in a ring, each with one end over the next: seen from above their cells have no order.
+
+    Cut in two along their length they have one: no cell then lies over one plank and under another.
+    """
+
+    kind: Literal["planks"] = "planks"
+    count: int = param(3, label="Planks", help="In the ring.", cost="bake", ge=3, le=24)
+    radius: float = param(
+        0.3, label="Radius", help="Of the circle that they touch.", unit="m", cost="bake", gt=0, le=1000
+    )
+    width: float = param(0.2, label="Width", help="Of each.", unit="m", cost="bake", gt=0, le=1000)
+    tilt: float = param(
+        14.0, label="Tilt", help="By which they rise along the ring.", unit="deg", cost="bake", ge=0, le=60
+    )
+    along: int = param(1, label="Cells along", help="Each plank.", cost="bake", ge=1, le=256)
+    repeat: float = repeats("across each", 1.0)
+
+    def mesh(self) -> BaseMesh:
+        """Its triangles."""
+        tilt = math.radians(self.tilt)
+        return surface_grids.planks(self.count, self.radius, self.width, tilt, self.along, self.repeat)
+
+
 class UserMesh(Model):
     """An uploaded mesh."""
 
@@ -165,7 +190,7 @@ class UserMesh(Model):
         return load_surface(self.model_dump(mode="json"))
 
 
-AnySurface = Plane | Sphere | Tube | Teapot | Vase | Mushroom | UserMesh
+AnySurface = Plane | Sphere | Tube | Teapot | Vase | Mushroom | Planks | UserMesh
 
 Surface = Annotated[AnySurface, Field(discriminator="kind")]
 

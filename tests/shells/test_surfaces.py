@@ -14,11 +14,13 @@ from renderer.core.errors import AssetError, LimitError
 from renderer.core.params import bake_arguments
 from renderer.shells import surface_mapping
 from renderer.shells.base_mesh import BaseMesh, face_vectors, flat_uv, from_corners, vertex_normals
+from renderer.shells.shell import build_shell
 from renderer.shells.surface_mapping import mapped
 from renderer.shells.surface_teapot import BODY, HANDLE, LID, SPOUT
 from renderer.shells.surfaces import (
     Mushroom,
     Plane,
+    Planks,
     Sphere,
     Teapot,
     Tube,
@@ -52,6 +54,7 @@ def euler(mesh: BaseMesh) -> int:
     (Teapot(), 2142, False, 1 + 1 + 0 + 0),
     (Vase(), 8640, False, 1),
     (Mushroom(), 2800, True, 2),
+    (Planks(), 6, False, 3),
 ], ids=lambda value: getattr(value, "kind", None))
 def test_the_built_in_surfaces_are_whole(surface: Any, triangles: int, closed: bool, holes: int) -> None:
     mesh = baked(surface)
@@ -84,7 +87,7 @@ def test_texture_repeats_as_often_as_asked() -> None:
 
 def test_texture_is_no_mirror_image() -> None:
     """u to the right and v upwards, seen from the front: the front is where u turns to v counter-clockwise."""
-    for surface in (Plane(), Sphere(), Sphere(layout="globe"), Tube(), Teapot(), Vase(), Mushroom()):
+    for surface in (Plane(), Sphere(), Sphere(layout="globe"), Tube(), Teapot(), Vase(), Mushroom(), Planks()):
         a, b = np.moveaxis(np.diff(baked(surface).corner_uv, axis=1), 1, 0)
         assert (a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0] > 0).all(), surface
 
@@ -151,6 +154,32 @@ def test_every_part_of_the_teapot_has_its_front_outside() -> None:
     for part in (middle[:, 0] < -0.55, middle[:, 0] > 0.6, abs(middle[:, 0]) < 0.3):
         side = middle[part] - middle[part].mean(axis=0)
         assert np.einsum("fk,fk->", normal[part], side) > 0
+
+
+def unordered(surface: Planks) -> int:
+    """How many cells of its shell are in, or behind, a cycle of cells that hide each other seen from above, along
+    3,600 upright lines."""
+    mesh = surface.mesh()
+    shell = build_shell(mesh, 0.05 * vertex_normals(mesh.vertices, mesh.faces))
+    x, y = np.meshgrid(*2 * [np.linspace(-0.8, 0.8, 60)])
+    normal, rest = shell.planes[..., :3], shell.planes[..., 3]
+    level = normal[..., 0, None] * x.ravel() + normal[..., 1, None] * y.ravel() + rest[..., None]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        meets = -level / normal[..., 2, None]
+    floor = np.where(normal[..., 2, None] < 0, meets, -np.inf).max(axis=1)
+    roof = np.where(normal[..., 2, None] > 0, meets, np.inf).min(axis=1)
+    held = (floor < roof - 1e-6) & ~((normal[..., 2, None] == 0) & (level > 0)).any(axis=1)
+    middle = np.where(held, (floor + roof) / 2, np.nan)
+    hides = (middle[:, None] > middle[None]).any(axis=-1)
+    left = np.ones(len(hides), bool)
+    while (free := left & ~hides[left].any(axis=0)).any():
+        left &= ~free
+    return int(left.sum())
+
+
+def test_planks_hide_each_other_in_a_circle() -> None:
+    assert unordered(Planks()) == 18
+    assert unordered(Planks(along=2)) == 0
 
 
 class TestUserMesh:
