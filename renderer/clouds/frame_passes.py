@@ -51,10 +51,10 @@ void main() {
     float under = AIR_UNDER ? min(0.5 * cut, 3.0e4) : cut + 0.5 * min(stop - cut, 6.0e4);
     first = vec4(near.t, near.depth, near.thickness, near.mu_view);
     second = vec4(far.t, far.depth, far.mu_view, under);
-    slopes = vec4(near.slope, near_kept, far_kept);
+    slopes = nearest_half(vec4(near.slope, near_kept, far_kept));
     look = found.air;
-    kept = vec4(found.kept, shown);
-    past = vec4(found.past, overhead);
+    kept = nearest_half(vec4(found.kept, shown));
+    past = nearest_half(vec4(found.past, overhead));
     gl_FragDepth = shown / SHOWS_ALL;
 }"""
 
@@ -92,7 +92,7 @@ class Pass:
 
 def layer_source(state: CloudsState, variant: Variant) -> Source:
     """The fragment stage that finds each ray's stretches inside the layer, and what is left behind; no sun is in it."""
-    files = (*FRAME_FILES, "clouds/frame.glsl")
+    files = ("lib/half.glsl", *FRAME_FILES, "clouds/frame.glsl")
     return composed(chosen_of(state, ("geometry",)), variant, files, LAYER_BODY, ("FRAME_TRACED",))
 
 

@@ -30,7 +30,7 @@ void main() {
 
 SLOPES = """layout(location = 0) out vec4 made;
 void main() {
-    made = moment_with_slopes(moment_heights, ivec2(gl_FragCoord.xy));
+    made = nearest_half(moment_with_slopes(moment_heights, ivec2(gl_FragCoord.xy)));
 }"""
 
 
@@ -70,4 +70,4 @@ def moving_map(
 @functools.cache
 def _stage(body: str) -> Source:
     defines = {"EDGE": repr(EDGE), "SWELLS": repr(SWELLS)}
-    return assemble(["clouds/moment.glsl"], defines=defines, declarations=DECLARATIONS, body=body)
+    return assemble(["lib/half.glsl", "clouds/moment.glsl"], defines=defines, declarations=DECLARATIONS, body=body)

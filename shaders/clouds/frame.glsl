@@ -20,9 +20,10 @@ float shown_by(bool cloud, float kept, bool again, bool ground) {
     return cloud ? SHOWS_SKY_THROUGH : SHOWS_SKY;
 }
 
-// Share of a beam along a ray that a stretch leaves unscattered.
+// Share of a beam along a ray that a stretch leaves unscattered; 1 means that no cloud is there, and of the least cloud half
+// floats still tell it apart.
 float stretch_keeps(Stretch s) {
-    return s.t > 0.0 && s.depth > 1.0e-6 ? exp(-min(s.depth / s.mu_view, AIR_DARKEST)) : 1.0;
+    return s.t > 0.0 && s.depth > 1.0e-6 ? exp(-clamp(s.depth / s.mu_view, 5.0e-4, AIR_DARKEST)) : 1.0;
 }
 
 // What is known of all rays of a picture before it is drawn: whether all that the air before the layer sends lies under it, where
@@ -83,8 +84,16 @@ Stretch traced_near(Ray ray) {
 void air_of(Ray ray, out vec3 near, out vec3 behind) {
     vec4 look = texelFetch(traced_look, ray.pixel, 0);
 #if AIR_TABLE == 1
-    near = air_light_to(look, look.z);
-    behind = max(air_light_to(look, look.w) - near, vec3(0.0));
+    // Rays that meet no cloud have one part: the second turn is skipped where none of their neighbours has two.
+    vec3 all = vec3(0.0);
+    int turn = 0;
+    do {
+        vec3 light = air_light_to(look, turn == 0 ? look.w : look.z);
+        if (turn == 0) all = light; else near = light;
+        turn++;
+    } while (turn == 1 && look.z > 0.0 && look.z < look.w);
+    if (turn == 1) near = look.z > 0.0 ? all : vec3(0.0);
+    behind = max(all - near, vec3(0.0));
 #else
     vec3 depth, kept = texelFetch(traced_kept, ray.pixel, 0).rgb;
     float distance_met = texelFetch(traced_ground, ray.pixel, 0).x;

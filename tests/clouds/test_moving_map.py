@@ -47,7 +47,7 @@ def off(thread: GLThread, time: float, **given: Any) -> float:
     ("time", "given"), [(0.0, {}), (900.0, {"cover": 1.0}), (5000.0, {"cover": 0.2, "variation": 1.0})]
 )
 def test_it_is_numpy_s_to_half_precision(thread: GLThread, time: float, given: dict[str, Any]) -> None:
-    assert off(thread, time, **given) < 1e-3
+    assert off(thread, time, **given) < 6e-4
 
 
 def test_an_edge_of_another_width_is_found(thread: GLThread, spoil: Callable) -> None:
