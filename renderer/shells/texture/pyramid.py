@@ -1,13 +1,12 @@
-"""The same matter at coarser and coarser resolutions: three filters.
+"""The same matter at coarser and coarser resolutions, by several filters.
 
 `thesis_pyramid`: section 5.3.2 of Dufort 2005 after Decaudin and Neyret 2004. Two layers become one by the opacity
 formula 5.1 and keep the opacity of twice the length (the reference length doubles at each level, erratum 002-4), then
 2 x 2 columns are averaged side by side.
 `mean_pyramid`: means of the extinction, right for matter without structure.
-`directional_pyramid`: extinctions along each of the three axes (formulas b3). Along u and v matter is composited at the
-full resolution across the axis, then averaged side by side, so that a coarse voxel has exactly the mean opacity of
-what it stands for, seen along that axis. Along w a coarse voxel takes, of the light which has come through those above
-it, exactly the share that the fine voxels take: columns that are opaque above hide what is opaque below.
+`above_pyramid`: of the light which has come down to it through those above, a coarse voxel takes exactly the share that
+its fine voxels take. Columns that are opaque above hide what is opaque below, and what lines up stays lined up.
+`directional_pyramid` (directional.py): extinctions along each of the three axes (formulas b3).
 
 All levels hold extinctions per reference length of level 0 and sizes of a mipmap: max(1, n // 2).
 """
@@ -15,7 +14,6 @@ All levels hold extinctions per reference length of level 0 and sizes of a mipma
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import numba
 import numpy as np
@@ -29,33 +27,6 @@ LEAST = np.float32(1e-30)
 
 SEEN = np.float32(1e-6)
 """Share of the light below which a voxel counts as hidden from above."""
-
-
-@dataclass(frozen=True)
-class Directional:
-    """A level whose extinction depends on the direction.
-
-    Attributes:
-        along: (3, K, J, I, 4) float32, extinction times colour and extinction along u, v, w, per reference length. The
-            colours along u and v are means of both directions; along w that of light which comes out at the top.
-        surface: as in `Extinct`, with the mean of the three extinctions.
-    """
-
-    along: np.ndarray
-    surface: np.ndarray
-
-    def towards(self, direction: np.ndarray) -> np.ndarray:
-        """Extinction form (K, J, I, 4) for rays along a unit direction in the frame of the box.
-
-        The extinction is that of an ellipsoid, whose projected area is sqrt(sum of d_k^2 s_k^2) (Heitz, Dupuy, Crassin
-        and Dachsbacher 2015, equation 2): exact for fog and for sheets across an axis, where the blend d_k^2 s_k of
-        formulas b3 is too clear for a sheet seen askew.
-        """
-        weight = np.square(np.asarray(direction, np.float32))
-        squared = np.tensordot(weight, np.square(self.along[..., 3]), axes=1)
-        blended: np.ndarray = np.tensordot(weight, self.along, axes=1)
-        factor = np.divide(np.sqrt(squared), blended[..., 3], out=np.zeros_like(squared), where=blended[..., 3] > 0)
-        return blended * factor[..., None]
 
 
 def extents(shape: tuple[int, ...], size: tuple[float, float, float], height: float = 1.0) -> Extents:
@@ -81,11 +52,11 @@ def thesis_pyramid(finest: Extinct, voxel: Extents) -> list[Extinct]:
         matter = np.ascontiguousarray(levels[-1].matter, np.float32)
         shape = tuple(max(1, length // 2) for length in matter.shape[:3])
         found = np.empty((*shape, 4), np.float32)
-        (rows, row_parts), (down, down_parts), (beside, beside_parts) = map(_cells, matter.shape[:3], shape)
+        (rows, row_parts), (down, down_parts), (beside, beside_parts) = map(cells, matter.shape[:3], shape)
         _joined(matter, rows, row_parts, down, down_parts, beside, beside_parts, height, found)
         height *= np.float32(matter.shape[0] / shape[0])
-        means = _halved(means)
-        levels.append(Extinct(found, _rescaled(means.surface, means.matter[..., 3], found[..., 3])))
+        means = halved(means)
+        levels.append(Extinct(found, rescaled(means.surface, means.matter[..., 3], found[..., 3])))
     return levels
 
 
@@ -94,7 +65,7 @@ def _joined(matter, rows, row_parts, down, down_parts, beside, beside_parts, hei
     """One level of the thesis: voxels of a column one over the other, light coming out at the top; columns averaged.
 
     Args:
-        matter: extinction form. rows, down, beside: `_cells` along w, v and u, each with its parts.
+        matter: extinction form. rows, down, beside: `cells` along w, v and u, each with its parts.
         height: of a voxel, in reference lengths. found: the coarser level, result.
     """
     one = np.float32(1)
@@ -129,56 +100,70 @@ def mean_pyramid(finest: Extinct) -> list[Extinct]:
     """Levels by the mean of the extinction, the finest first."""
     levels = [finest]
     while max(levels[-1].matter.shape[:3]) > 1:
-        levels.append(_halved(levels[-1]))
+        levels.append(halved(levels[-1]))
     return levels
 
 
-def _halved(finer: Extinct) -> Extinct:
+def halved(finer: Extinct) -> Extinct:
+    """The next level of the means of extinction."""
     matter, surface = finer.matter, finer.surface
     for axis, length in enumerate(finer.matter.shape[:3]):
-        matter, surface = (_average(part, axis, max(1, length // 2)) for part in (matter, surface))
+        matter, surface = (averaged(part, axis, max(1, length // 2)) for part in (matter, surface))
     return Extinct(matter, surface)
 
 
-def directional_pyramid(finest: Extinct, voxel: Extents) -> list[Directional]:
-    """Levels by the directional filter, the finest first, which is the same in all directions.
+def above_pyramid(finest: Extinct, voxel: Extents) -> list[Extinct]:
+    """Levels by the light from above, the finest first: of what has come down to it, a coarse voxel takes the share
+    that its fine voxels take.
 
     Args:
         finest: level 0. voxel: its voxels' sides in reference lengths.
     """
-    levels = [Directional(np.stack([finest.matter] * 3), finest.surface)]
-    # Arrays are [k, j, i]: u is their last axis.
-    columns, length = [finest.matter] * 2, list(voxel[:2])
-    means, light = finest, _from_above(finest.matter, voxel[2])
-    while max(levels[-1].surface.shape[:3]) > 1:
-        shape = tuple(max(1, n // 2) for n in levels[-1].surface.shape[:3])
-        along = np.empty((3, *shape, 4), np.float32)
-        for k, axis in enumerate((2, 1)):
-            count = columns[k].shape[axis]
-            columns[k] = _in_front(columns[k], axis, length[k])
-            length[k] *= count / shape[axis]
-            beside = _opaque(columns[k], length[k])
-            for across in {0, 1, 2} - {axis}:
-                beside = _average(beside, across, shape[across])
-            along[k] = _extinct(beside, length[k])
-        means = _halved(means)
-        light = _average(_average(light, 1, shape[1]), 2, shape[2])
-        along[2] = _taken(light, shape[0], voxel[2], means.matter)
-        levels.append(
-            Directional(along, _rescaled(means.surface, means.matter[..., 3], along[..., 3].mean(axis=0)))
-        )
+    levels, means, light = [finest], finest, np.empty(0, np.float32)
+    while max(levels[-1].matter.shape[:3]) > 1:
+        shape = tuple(max(1, length // 2) for length in levels[-1].matter.shape[:3])
+        if len(levels) == 1:
+            light = np.zeros((len(finest.matter) + 1, shape[1], shape[2], 4), np.float32)
+            across = (*cells(finest.matter.shape[1], shape[1]), *cells(finest.matter.shape[2], shape[2]))
+            _from_above(np.ascontiguousarray(finest.matter, np.float32), *across, np.float32(voxel[2]), light)
+        else:
+            light = averaged(averaged(light, 1, shape[1]), 2, shape[2])
+        means = halved(means)
+        found = _taken(light, shape[0], voxel[2], means.matter)
+        levels.append(Extinct(found, rescaled(means.surface, means.matter[..., 3], found[..., 3])))
     return levels
 
 
-def _from_above(matter: np.ndarray, height: float) -> np.ndarray:
-    """Colour seen so far, and transmittance, of each column above each boundary of layers, from the top, (K + 1, J, I,
-    4)."""
-    down = _opaque(matter[::-1], height)
-    found = np.zeros((len(down) + 1, *down.shape[1:]), np.float32)
-    found[0, ..., 3] = 1
-    np.cumprod(down[..., 3], axis=0, out=found[1:, ..., 3])
-    np.cumsum(down[..., :3] * found[:-1, ..., 3:], axis=0, out=found[1:, ..., :3])
-    return found
+@numba.njit(cache=True, nogil=True, fastmath=True)
+def _from_above(matter, down, down_parts, beside, beside_parts, height, light):
+    """Colour seen so far and transmittance above each boundary of layers, from the top, means of coarse columns.
+
+    Args:
+        matter: extinction form. down, beside: `cells` along v and u, each with its parts. height: of a voxel, in
+        reference lengths. light: (K + 1, J', I', 4) of zeros, result.
+    """
+    layers = len(matter)
+    for j in range(len(down)):
+        for i in range(len(beside)):
+            weight = down_parts[j].sum() * beside_parts[i].sum()
+            for b in range(down.shape[1]):
+                for a in range(beside.shape[1]):
+                    clear = down_parts[j, b] * beside_parts[i, a] / weight
+                    red = green = blue = np.float32(0)
+                    light[0, j, i, 3] += clear
+                    for k in range(layers):
+                        own = matter[layers - 1 - k, down[j, b], beside[i, a]]
+                        if own[3] > 0:
+                            left = clear * math.exp(-own[3] * height)
+                            taken = (clear - left) / own[3]
+                            red += taken * own[0]
+                            green += taken * own[1]
+                            blue += taken * own[2]
+                            clear = left
+                        light[k + 1, j, i, 0] += red
+                        light[k + 1, j, i, 1] += green
+                        light[k + 1, j, i, 2] += blue
+                        light[k + 1, j, i, 3] += clear
 
 
 def _taken(light: np.ndarray, count: int, height: float, means: np.ndarray) -> np.ndarray:
@@ -207,13 +192,14 @@ def _taken(light: np.ndarray, count: int, height: float, means: np.ndarray) -> n
     return np.where(seen[..., None], found, means[::-1])[::-1]
 
 
-def _rescaled(surface: np.ndarray, weight: np.ndarray, extinction: np.ndarray) -> np.ndarray:
+def rescaled(surface: np.ndarray, weight: np.ndarray, extinction: np.ndarray) -> np.ndarray:
+    """Surfaces (K, J, I, 4) that are weighted by one extinction (K, J, I), weighted by another."""
     factor = np.divide(extinction, weight, out=np.zeros_like(extinction), where=weight > 0)
     scaled: np.ndarray = surface * factor[..., None]
     return scaled
 
 
-def _cells(length: int, count: int) -> tuple[np.ndarray, np.ndarray]:
+def cells(length: int, count: int) -> tuple[np.ndarray, np.ndarray]:
     """Voxels (count, S) of which each coarser one is made, in order, and how much of each (0 to 1)."""
     edges = np.arange(count + 1) * (length / count)
     first = np.floor(edges[:-1] + 1e-9).astype(int)
@@ -223,7 +209,7 @@ def _cells(length: int, count: int) -> tuple[np.ndarray, np.ndarray]:
     return np.minimum(index, length - 1), np.clip(part, 0.0, 1.0).astype(np.float32)
 
 
-def _average(array: np.ndarray, axis: int, count: int) -> np.ndarray:
+def averaged(array: np.ndarray, axis: int, count: int) -> np.ndarray:
     """Means of `count` equal runs along an axis."""
     length = array.shape[axis]
     if length == count:
@@ -231,65 +217,10 @@ def _average(array: np.ndarray, axis: int, count: int) -> np.ndarray:
     if length == 2 * count:
         first, second = (array[(slice(None),) * axis + (slice(slot, None, 2),)] for slot in range(2))
         return (first + second) * np.float32(0.5)
-    index, part = _cells(length, count)
+    index, part = cells(length, count)
     shares = [-1 if n == axis else 1 for n in range(array.ndim)]
     total = sum(array.take(index[:, slot], axis) * part[:, slot].reshape(shares) for slot in range(index.shape[1]))
     mean: np.ndarray = total / np.float32(length / count)
     return mean
 
 
-def _in_front(matter: np.ndarray, axis: int, length: float) -> np.ndarray:
-    """Voxels joined in front of one another along an axis, to half as many; extinction form. The colour is the mean of
-    what comes out at either end.
-
-    Args:
-        length: of a voxel along the axis, in reference lengths.
-    """
-    parts = _slots(matter, axis)
-    extinction = _average(matter[..., 3], axis, max(1, matter.shape[axis] // 2))
-    seen = np.zeros((*extinction.shape, 3), np.float32)
-    for order in (parts, parts[::-1]):
-        clear = np.ones_like(extinction)
-        for own, share in order:
-            passes = np.exp(own[..., 3] * (-np.float32(length) * share))
-            taken = np.divide(clear * (1 - passes), own[..., 3], out=np.zeros_like(passes), where=own[..., 3] > 0)
-            seen += own[..., :3] * taken[..., None]
-            clear *= passes
-    opacity = 2 * (1 - clear)
-    factor = np.divide(extinction, opacity, out=np.zeros_like(opacity), where=opacity > 0)
-    found = np.empty((*extinction.shape, 4), np.float32)
-    np.multiply(seen, factor[..., None], out=found[..., :3])
-    found[..., 3] = extinction
-    return found
-
-
-def _slots(matter: np.ndarray, axis: int) -> list[tuple[np.ndarray, np.ndarray]]:
-    """The voxels that become one, in order along an axis, and how much of each (0 to 1)."""
-    length = matter.shape[axis]
-    if length % 2 == 0:
-        one = np.ones((), np.float32)
-        return [(matter[(slice(None),) * axis + (slice(slot, None, 2),)], one) for slot in range(2)]
-    index, part = _cells(length, max(1, length // 2))
-    shares = [-1 if n == axis else 1 for n in range(3)]
-    return [(matter.take(index[:, slot], axis), part[:, slot].reshape(shares)) for slot in range(index.shape[1])]
-
-
-def _opaque(matter: np.ndarray, length: float) -> np.ndarray:
-    """Colour times opacity, and transmittance, of a length [reference lengths] of matter in extinction form."""
-    passes = np.exp(matter[..., 3] * -np.float32(length))
-    factor = np.divide(1 - passes, matter[..., 3], out=np.zeros_like(passes), where=matter[..., 3] > 0)
-    found = np.empty_like(matter)
-    np.multiply(matter[..., :3], factor[..., None], out=found[..., :3])
-    found[..., 3] = passes
-    return found
-
-
-def _extinct(opaque: np.ndarray, length: float) -> np.ndarray:
-    """The inverse of `_opaque`."""
-    passes = opaque[..., 3]
-    extinction = np.log(np.maximum(passes, LEAST)) * np.float32(-1 / length)
-    factor = np.divide(extinction, 1 - passes, out=np.zeros_like(extinction), where=passes < 1)
-    found = np.empty_like(opaque)
-    np.multiply(opaque[..., :3], factor[..., None], out=found[..., :3])
-    found[..., 3] = extinction
-    return found
