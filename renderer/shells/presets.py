@@ -1,14 +1,181 @@
-"""Named views of the shells."""
+"""Named views of the shells: the scenes of Dufort 2005, table 6.1 and figures 5.11 and 6.1."""
 
 from __future__ import annotations
 
+from typing import Any
+
 from renderer.core.technique import Preset
 
+
+def _camera(
+    distance: float, azimuth: float, elevation: float, field_of_view: float = 35, height: float = 0.0
+) -> dict[str, Any]:
+    return {
+        "kind": "orbit",
+        "target": [0, 0, height],
+        "distance": distance,
+        "azimuth": azimuth,
+        "elevation": elevation,
+        "field_of_view": field_of_view,
+    }
+
+
+def _sun(azimuth: float, elevation: float) -> dict[str, Any]:
+    return {"kind": "direction", "azimuth": azimuth, "elevation": elevation}
+
+
+_HOLLOW = {"opaque": False}
+
 PRESETS = {
-    "fur": Preset("Fur", "Hair that grows on a sphere.", {}),
+    "fur": Preset(
+        "Fur",
+        "Hair that grows on a sphere, semi-transparent at its tips.",
+        {
+            "camera": _camera(2.9, 150, 15),
+            "sun": _sun(205, 45),
+            "extrusion": {"thickness": 0.16},
+            "base": {"colour": [0.12, 0.07, 0.04]},
+        },
+    ),
+    "teapot_relief": Preset(
+        "Teapot, relief",
+        "A semi-transparent relief on a hollow teapot.",
+        {
+            "surface": {"kind": "teapot"},
+            "extrusion": {"thickness": 0.06},
+            "texture": {"kind": "relief"},
+            "base": _HOLLOW,
+            "camera": _camera(3.2, 200, 20),
+            "sun": _sun(150, 50),
+        },
+    ),
+    "teapot_wicker": Preset(
+        "Teapot, wicker",
+        "Opaque rods woven round a teapot.",
+        {
+            "surface": {"kind": "teapot"},
+            "extrusion": {"thickness": 0.05},
+            "texture": {"kind": "weave"},
+            "base": {"colour": [0.1, 0.06, 0.03]},
+            "camera": _camera(3.2, 165, 22),
+            "sun": _sun(110, 40),
+        },
+    ),
+    "vase_trees": Preset(
+        "Vase, trees",
+        "Opaque trees that stand out of a vase.",
+        {
+            "surface": {"kind": "vase"},
+            "extrusion": {"thickness": 0.12},
+            "texture": {"kind": "trees"},
+            "base": {"colour": [0.2, 0.26, 0.07]},
+            "camera": _camera(3.6, 180, 12),
+            "sun": _sun(120, 35),
+        },
+    ),
+    "vase_relief": Preset(
+        "Vase, relief",
+        "A semi-transparent relief on a hollow vase: its back shows through.",
+        {
+            "surface": {"kind": "vase", "repeat_u": 6, "repeat_v": 4},
+            "extrusion": {"thickness": 0.05},
+            "texture": {"kind": "relief"},
+            "base": _HOLLOW,
+            "camera": _camera(3.6, 180, 12),
+            "sun": _sun(230, 40),
+        },
+    ),
+    "plane_fog": Preset(
+        "Trees in fog",
+        "Trees on a plane, in fog that the sun shines through.",
+        {
+            "surface": {"kind": "plane", "size": 4, "repeat_u": 4, "repeat_v": 4},
+            "extrusion": {"thickness": 0.35},
+            "texture": {"kind": "trees", "fog": 1.5},
+            "base": {"colour": [0.2, 0.26, 0.07]},
+            "camera": _camera(4.0, 200, 22, 40),
+            "sun": _sun(290, 25),
+        },
+    ),
+    "tube_rocks": Preset(
+        "Tube, rocks",
+        "Rocks on a tube of few triangles.",
+        {
+            "surface": {"kind": "tube"},
+            "extrusion": {"thickness": 0.12},
+            "texture": {"kind": "rocks"},
+            "base": {"colour": [0.1, 0.09, 0.08]},
+            "camera": _camera(3.4, 160, 14),
+            "sun": _sun(95, 35),
+        },
+    ),
+    "earth_clouds": Preset(
+        "Clouds over the Earth",
+        "A globe under semi-transparent clouds that cast their shadow.",
+        {
+            "surface": {"kind": "sphere", "layout": "globe", "divisions": 12, "repeat_u": 4, "repeat_v": 2},
+            "extrusion": {"thickness": 0.05},
+            "texture": {"kind": "clouds"},
+            "base": {"colour": [0.05, 0.11, 0.2]},
+            "camera": _camera(2.7, 160, 18),
+            "sun": _sun(100, 30),
+        },
+    ),
     "jelly": Preset(
         "Balls in jelly",
-        "Opaque balls in red, semi-transparent matter.",
-        {"texture": {"kind": "jelly"}, "base": {"opaque": True}, "surface": {"kind": "sphere"}},
+        "Opaque balls in red, semi-transparent jelly.",
+        {
+            "texture": {"kind": "jelly"},
+            "extrusion": {"thickness": 0.2},
+            "base": {"colour": [0.5, 0.05, 0.04]},
+            "camera": _camera(2.9, 150, 15),
+            "sun": _sun(205, 45),
+        },
+    ),
+    "absorber": Preset(
+        "Green absorber",
+        "Even green matter in a hollow sphere: its opacity has a closed form.",
+        {
+            "texture": {"kind": "uniform"},
+            "extrusion": {"thickness": 0.2},
+            "base": _HOLLOW,
+            "camera": _camera(2.9, 150, 15),
+            "sun": _sun(205, 45),
+        },
+    ),
+    "chain": Preset(
+        "Chain",
+        "Opaque links round a sphere.",
+        {
+            "texture": {"kind": "chain"},
+            "extrusion": {"thickness": 0.12},
+            "surface": {"kind": "sphere", "layout": "globe", "repeat_u": 6, "repeat_v": 3},
+            "base": {"colour": [0.05, 0.05, 0.06]},
+            "camera": _camera(2.7, 150, 15),
+            "sun": _sun(205, 45),
+        },
+    ),
+    "sphere_rocks": Preset(
+        "Rocks",
+        "A sphere of rocks.",
+        {
+            "texture": {"kind": "rocks", "across": 256, "stones": 6},
+            "extrusion": {"thickness": 0.15},
+            "base": {"colour": [0.1, 0.09, 0.08]},
+            "camera": _camera(2.8, 150, 15),
+            "sun": _sun(220, 30),
+        },
+    ),
+    "mushroom": Preset(
+        "Mushroom",
+        "Deformed wood on a mushroom: voxels finer than pixels, filtered (figure 5.11).",
+        {
+            "surface": {"kind": "mushroom"},
+            "texture": {"kind": "wood"},
+            "extrusion": {"thickness": 0.04},
+            "base": {"colour": [0.2, 0.1, 0.04]},
+            "camera": _camera(3.0, 150, 12),
+            "sun": _sun(210, 40),
+        },
     ),
 }

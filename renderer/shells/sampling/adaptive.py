@@ -16,9 +16,9 @@ class Adaptive(ShellsTechnique):
     paper: ClassVar[str] = "Levoy 1990, section 3"
 
     kind: Literal["adaptive"] = "adaptive"
-    rate: float = param(1.0, label="Rate", help="Samples a voxel.", ge=0.05, le=64)
+    rate: float = param(0.7, label="Rate", help="Samples a voxel.", ge=0.05, le=64)
     lit: float = param(
-        0.3, label="Lit", help="Opacity of the samples that share one look at the light.", unit="ratio", ge=0, le=1
+        0.5, label="Lit", help="Opacity of the samples that share one look at the light.", unit="ratio", ge=0, le=1
     )
     most: int = param(
         256, label="Most samples", help="Of one segment.", cost="build", unit="count", ge=1, le=4096
