@@ -20,7 +20,7 @@ class Moments(OrderTechnique):
     """Cells in any order: five sums a pixel say about how much lies before each; opacity is exact, colours are not."""
 
     title: ClassVar[str] = "Moments"
-    caption: ClassVar[str] = "Unsorted: five sums a pixel tell about how much lies in front. Opacity exact, colours near."
+    caption: ClassVar[str] = "Unsorted: five sums a pixel tell how much lies in front. Exact opacity, near colours."
     paper: ClassVar[str] = "Münstermann, Krumpen, Klein & Peters 2018"
 
     kind: Literal["moments"] = "moments"
