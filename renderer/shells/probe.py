@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from renderer.core.technique import Arrays
+from renderer.shells.animation_scene import moment
 from renderer.world.camera import rays
 
 if TYPE_CHECKING:
@@ -30,13 +31,14 @@ def probe(
     column, row = min(int(x * width), width - 1), min(int(y * height), height - 1)
     origins, directions = rays(state.camera, width, height, (x * width - column, y * height - row))
     origin, ray = origins[row, column], directions[row, column]
-    near, far = crossings(arrays["shell"]["planes"], origin, ray)
+    shell = moment(arrays["surface"], arrays["shell"], state.extrusion, state.motion, state.time).shell
+    near, far = crossings(shell["planes"], origin, ray)
     met = np.flatnonzero(far > near)
     if not len(met):
         return {"sky": True}
     first = met[np.argmin(near[met])]
     point = origin + near[first] * ray
-    place = arrays["shell"]["to_texture"][first] @ np.append(point, 1.0)
+    place = shell["to_texture"][first] @ np.append(point, 1.0)
     return {
         "position": [round(float(value), 4) for value in point],
         "texture": [round(float(value), 4) for value in place],

@@ -17,6 +17,7 @@ from renderer.gl.program import AnyTexture
 from renderer.gl.resident import Resident
 from renderer.gl.source import Source
 from renderer.gl.targets import run_fullscreen
+from renderer.shells.animation_scene import Animator
 from renderer.shells.entries import Entries
 from renderer.shells.frame import Frame, moved
 from renderer.shells.raster import Rasters
@@ -44,6 +45,7 @@ class ShellsRenderer:
     def __init__(self, gl: GL) -> None:
         self._gl = gl
         self._sky = Resident(gl, 8)
+        self._animator = Animator()
         self._shells: OrderedDict[Hashable, tuple[dict[str, Any], Placed]] = OrderedDict()
         self._textures: OrderedDict[Hashable, Uploaded] = OrderedDict()
         self.entries = Entries(gl)
@@ -61,7 +63,9 @@ class ShellsRenderer:
             sample: its number, which turns the jitter.
         """
         arrays = {name: entry.arrays for name, entry in baked.items()}
-        shell_key = (baked["shell"].key, state.base.opaque)
+        now = self._animator.at(baked["surface"], baked["shell"], state.extrusion, state.motion, state.time)
+        arrays |= {"surface": now.surface, "shell": now.shell}
+        shell_key = (now.key, state.base.opaque)
         objects, place = self._shell(shell_key, arrays["shell"], state)
         texture_key, texture = self._texture(state, baked)
         values = self._light(state, arrays) | moved(state.camera, size, place.centre) | _pixel(state, size)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from renderer.core.technique import Arrays
+from renderer.shells.animation_scene import moment
 from renderer.shells.texture.block import texture_of
 from renderer.shells.texture.sources import moment_of
 from renderer.world.sky import sky_for, sky_radiance
@@ -34,7 +35,8 @@ def world_arrays(state: ShellsState, baked: Mapping[str, Arrays]) -> dict[str, A
     """
     elevation = angles(state.sun)[1]
     now, sun = sky_for(baked["sky"], elevation), direction(state.sun)
-    shell = baked["shell"]
+    at = moment(baked["surface"], baked["shell"], state.extrusion, state.motion, state.time)
+    shell = at.shell
     texture = texture_of(baked["texture"], state.extrusion.thickness, **moment_of(state.texture))
     return {
         "positions": shell["positions"],
@@ -52,7 +54,7 @@ def world_arrays(state: ShellsState, baked: Mapping[str, Arrays]) -> dict[str, A
         "sun": tuple(float(v) for v in sun),
         "e_sun": tuple(float(v) for v in now.sun_irradiance),
         "e_sky": tuple(float(v) for v in now.sky_irradiance),
-        "base": _base(state, baked["surface"]) if state.base.opaque else None,
+        "base": _base(state, at.surface) if state.base.opaque else None,
         "background": lambda directions: sky_radiance(now, sun, directions),
     }
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from renderer.core.params import bake_arguments
@@ -9,9 +11,13 @@ from renderer.core.technique import BakedArrays
 from renderer.shells.animation import MOVING, Bend, Bump, Still
 from renderer.shells.animation_scene import Animator, moment
 from renderer.shells.extrusion import Extrusion
+from renderer.shells.probe import crossings
 from renderer.shells.shell_bake import bake_shell
 from renderer.shells.surfaces import Sphere, bake_surface
+from renderer.world.camera import Orbit, rays
+from tests.shells.conftest import even, sigma
 
+Draw = Callable[..., np.ndarray]
 EXTRUSION = Extrusion(thickness=0.05)
 SURFACE = bake_surface(bake_arguments(Sphere(divisions=6)), {}, lambda *_: None)
 SHELL = bake_shell(bake_arguments(EXTRUSION), {"surface": SURFACE}, lambda *_: None)
@@ -48,3 +54,21 @@ def test_what_stands_still_is_the_bake_itself() -> None:
     assert still.shell is SHELL
     assert still.key == "shell"
     assert moment(SURFACE, SHELL, EXTRUSION, Still(), 7.0).surface is SURFACE
+
+
+def test_the_picture_follows(draw: Draw) -> None:
+    """Opacities of an even absorber over a bumped, hollow ball are those of the ways through its cells at that time."""
+    bump = {"kind": "bump", "height": 0.15, "radius": 0.5, "period": 8.0}
+    camera = {"kind": "orbit", "target": [0, 0, 0], "distance": 3, "azimuth": 60, "elevation": 9, "field_of_view": 40}
+    scene = {"surface": {"kind": "sphere", "divisions": 6}, "extrusion": {"thickness": 0.05}, "camera": camera}
+    size = 12
+    still = draw(scene, even(0.05), size=size)[..., 3]
+    for time in (0.5, 1.0):
+        moved = draw({**scene, "motion": bump, "time": time}, even(0.05), size=size)[..., 3]
+        planes = moment(SURFACE, SHELL, EXTRUSION, Bump(**bump), time).shell["planes"]
+        ways = np.stack(rays(Orbit(**camera), size, size), axis=2).reshape(-1, 2, 3)
+        near, far = np.moveaxis([crossings(planes, *way) for way in ways], 1, 0)
+        length = np.where(far > near, far - near, 0.0).sum(axis=1).reshape(size, size)
+        expected = 1 - np.exp(-sigma(0.05) * length)
+        assert abs(moved - expected).max() < 5e-4
+        assert abs(still - expected).max() > 0.01
