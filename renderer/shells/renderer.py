@@ -129,7 +129,7 @@ class ShellsRenderer:
     def _texture(self, state: ShellsState, baked: Baked) -> tuple[Hashable, Uploaded]:
         thickness = state.extrusion.thickness
         moment = moment_of(state.texture)
-        filtered = state.filter.kind != "none"
+        filtered = getattr(state.filter, "levels", "")
         reading = (state.voxels.interpolation, state.voxels.wrap, state.voxels.storage)
         key = (baked["texture"].key, tuple(moment.items()), thickness, reading, filtered)
         if key not in self._textures:

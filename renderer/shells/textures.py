@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import moderngl
@@ -9,11 +10,17 @@ import numpy as np
 
 from renderer.gl.context import GL
 from renderer.gl.textures import Filter
-from renderer.shells.levels import Level, pyramid
 from renderer.shells.texture.block import ShellTexture
+from renderer.shells.texture.extinction import Extinct, form_of, halves
+from renderer.shells.texture.pyramid import Extents, above_pyramid, extents, mean_pyramid, thesis_pyramid
 from renderer.shells.voxels import Voxels
 
-TYPES = {"half": np.float16, "float": np.float32}
+PYRAMIDS: dict[str, Callable[[Extinct, Extents], list[Extinct]]] = {
+    "thesis": thesis_pyramid,
+    "above": above_pyramid,
+    "mean": lambda finest, voxel: mean_pyramid(finest),
+}
+"""How coarser levels are made, by the word of the technique `mipmap`."""
 
 
 @dataclass(frozen=True)
@@ -36,34 +43,45 @@ class Uploaded:
         self.normal.release()
 
 
-def upload(gl: GL, texture: ShellTexture, voxels: Voxels, thickness: float, coarser: bool) -> Uploaded:
+def upload(gl: GL, texture: ShellTexture, voxels: Voxels, thickness: float, levels: str) -> Uploaded:
     """The texture, in the form that its interpolation asks for.
 
     Args:
-        texture: as it is at the moment. thickness: of the shell [m]. coarser: whether its levels are read.
+        texture: as it is at the moment. thickness: of the shell [m]. levels: how coarser ones are made, a key of
+            `PYRAMIDS`; empty where none is read.
     """
-    finest = Level(texture.extinction(), texture.colour[..., :3], texture.normal)
-    levels = [finest]
-    if coarser and voxels.interpolation != "nearest":
-        levels += pyramid(finest, thickness / finest.extinction.shape[0])
-    straight = voxels.interpolation == "straight"
-    scale = 1 / texture.reference_length if straight else float(finest.extinction.max()) or 1.0
-    matter, normal = zip(*(_read(level, scale, straight) for level in levels), strict=True)
+    finest = form_of(texture)
+    height = thickness / len(finest.matter) / texture.reference_length
+    made = [finest]
+    if levels and voxels.interpolation != "nearest":
+        made = PYRAMIDS[levels](finest, extents(finest.matter.shape, texture.size, height))
+    greatest = float(finest.matter[..., 3].max()) or 1.0
+    if voxels.interpolation == "straight":
+        greatest = 1.0
+        parts = [_straight(level) for level in made]
+        parts[0] = texture.colour, texture.normal
+    else:
+        parts = [(level.matter, level.surface) for level in made]
+    stored = [[_stored(part[which], 1 / greatest, voxels) for part in parts] for which in range(2)]
     side = voxels.wrap
-    made = [
-        gl.texture3d(arrays[0], _between(voxels), (side, side, "clamp"), arrays[1:])
-        for arrays in ([array.astype(TYPES[voxels.storage]) for array in part] for part in (matter, normal))
-    ]
-    return Uploaded(made[0], made[1], scale, len(levels) - 1)
+    matter, normal = (gl.texture3d(part[0], _between(voxels), (side, side, "clamp"), part[1:]) for part in stored)
+    return Uploaded(matter, normal, greatest / texture.reference_length, len(made) - 1)
 
 
 def _between(voxels: Voxels) -> Filter:
     return "nearest" if voxels.interpolation == "nearest" else "linear"
 
 
-def _read(level: Level, scale: float, straight: bool) -> tuple[np.ndarray, np.ndarray]:
-    """What is interpolated: colour and alpha of a reference length 1 / scale, or shares of an extinction `scale`."""
-    share = (level.extinction / scale)[..., None]
-    if straight:
-        return np.concatenate([level.colour, -np.expm1(-share)], axis=-1), level.normal
-    return np.concatenate([level.colour * share, share], axis=-1), level.normal * share
+def _stored(array: np.ndarray, factor: float, voxels: Voxels) -> np.ndarray:
+    """An array times a factor in the type that is kept on the GPU."""
+    return halves(array, factor) if voxels.storage == "half" else array * np.float32(factor)
+
+
+def _straight(level: Extinct) -> tuple[np.ndarray, np.ndarray]:
+    """Colour and alpha of a reference length, and normal and glow, of a level."""
+    extinction = level.matter[..., 3:]
+    there = np.broadcast_to(extinction > 0, level.matter.shape)
+    colour, surface = (np.divide(part, extinction, out=np.zeros_like(part), where=there)
+                       for part in (level.matter, level.surface))
+    colour[..., 3:] = -np.expm1(-extinction)
+    return colour, surface

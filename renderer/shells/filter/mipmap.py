@@ -16,4 +16,10 @@ class Mipmap(ShellsTechnique):
     paper: ClassVar[str] = "Dufort 2005, section 5.3.2"
 
     kind: Literal["mipmap"] = "mipmap"
+    levels: Literal["thesis", "above", "mean"] = param(
+        "thesis",
+        label="Coarser voxels",
+        cost="host",
+        help="How they are made: opacities put together as in the thesis, what the light from above meets, or means.",
+    )
     bias: float = param(0.0, label="Bias", help="Levels coarser than a pixel asks for.", ge=-4, le=4)

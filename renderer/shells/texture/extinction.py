@@ -12,7 +12,7 @@ import numba
 import numpy as np
 
 from renderer.core.technique import Arrays
-from renderer.shells.texture.block import CLAMP, moment_arrays, opacity_then
+from renderer.shells.texture.block import CLAMP, ShellTexture, moment_arrays, opacity_then
 
 MOST = np.float32(1 - CLAMP)
 """Opacity that counts as the greatest: see `CLAMP`."""
@@ -39,6 +39,12 @@ def extinct(baked: Arrays, *, growth: float = 1.0, density: float = 1.0, second:
     moment = moment_arrays(baked, growth, density, second)
     _extinct(colour, normal, baked["material"], *moment, found.matter, found.surface)
     return found
+
+
+def form_of(texture: ShellTexture) -> Extinct:
+    """The extinction form of a texture as it is drawn."""
+    return extinct({"colour": texture.colour, "normal": texture.normal,
+                    "material": np.broadcast_to(np.uint8(1), texture.colour.shape[:3])})
 
 
 def halves(array: np.ndarray, factor: float = 1.0) -> np.ndarray:

@@ -37,6 +37,22 @@ def test_plates_keep_the_share_that_they_cover(draw: Draw) -> None:
     assert float(found[..., 3].mean()) == pytest.approx(0.25, abs=0.02)
 
 
+def test_columns_stay_as_thin_as_they_are(draw: Draw) -> None:
+    """Upright columns over a sixteenth of the ground: seen from afar and above they hide a sixteenth by the light from
+    above, and more by opacities that are put together as if by chance."""
+    block = np.zeros((8, 64, 64, 4), np.float32)
+    block[..., :3] = 1.0
+    block[:, ::4, ::4, 3] = 0.9999
+    camera = {"kind": "orthographic", "centre": [0, 0, 0], "direction": [0, 0, -1], "up": [0, 1, 0], "width": 1.6}
+    found = {}
+    for levels in ("above", "thesis", "mean"):
+        change = {"filter": {**MIPMAP, "levels": levels, "bias": -1.0}, "camera": camera}
+        found[levels] = float(draw(change, block, reference_length=0.5 / 8, size=6)[..., 3].mean())
+    assert found["above"] == pytest.approx(1 / 16, rel=0.05)
+    assert found["thesis"] > 1.3 / 16
+    assert found["mean"] > found["thesis"]
+
+
 @pytest.mark.parametrize(
     ("right", "wrong"), [("pixel_width(distance) * finest", "finest"), ("0.0, filter_coarsest)", "0.0, 0.0)")]
 )
