@@ -41,19 +41,19 @@ const float WIDE_FROM = 0.007, WIDE_TO = 0.035; // footprints, of the map's side
 const float MIDWAY = 0.5; // of the mean thickness: what of a cloud is higher is looked for at `upper`
 
 // The same as the eye sees it along a ray, which is low in a layer of mean thickness at `place` and high at `upper`: where it finds a
-// gap in one and cloud in the other, it goes through the cloud. Over the ray's width: over its length, some `longer` times that, gaps
+// gap in one and cloud in the other, it goes through the cloud. footprint: the mean of the width and the length of the ray's, or gaps
 // would close that are wide enough to be seen. From so far that the map's period would show, clouds are those of the map laid wider
 // and turned.
-Cover cover_through(vec2 place, vec2 upper, float footprint, float longer) {
+Cover cover_through(vec2 place, vec2 upper, float footprint) {
     vec2 half_place = place / (2.0 * planet_radius), from_middle = place - cloud_drift;
     float stretched = 1.0 + dot(half_place, half_place);
     float across = footprint * stretched;
     vec3 found = map_at(from_middle, across);
     found.x = min(found.x, MIDWAY) + max(map_at(upper - cloud_drift, across).x - MIDWAY, 0.0);
     vec2 turned = vec2(0.8 * from_middle.x - 0.6 * from_middle.y, 0.6 * from_middle.x + 0.8 * from_middle.y);
-    float wide = cloud_widens * smoothstep(WIDE_FROM, WIDE_TO, footprint * longer / cloud_side);
+    float wide = cloud_widens * smoothstep(WIDE_FROM, WIDE_TO, footprint / cloud_side);
     // Farther still its period would show too: its mean is left, and the weather.
-    float seen = longer * across / WIDER, even = exp2(6.0 * smoothstep(WIDE_FROM, WIDE_TO, seen / cloud_side));
+    float seen = across / WIDER, even = exp2(6.0 * smoothstep(WIDE_FROM, WIDE_TO, seen / cloud_side));
     found = mix(found, vec3(map_at(turned / WIDER, seen * even).x, 0.0, 0.0), wide);
     found *= layer_thickness * weather_at(half_place, stretched, footprint);
     return Cover(found.x, found.yz);

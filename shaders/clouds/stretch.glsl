@@ -22,8 +22,9 @@ Stretch stretch_of(Path path, vec3 origin, vec3 direction, int leg, vec2 nominal
     float cosine = dot(direction, up_at(point));
     // A quarter and four fifths of the layer's mean height: what lies below its half, and above it, is looked for there.
     float climb = sign(cosine) * layer_thickness / max(abs(cosine), 0.05);
-    vec2 lower = place_of(point - 0.25 * climb * direction), upper = place_of(point + 0.3 * climb * direction);
-    Cover cover = cover_through(lower, upper, footprint * t, inversesqrt(clamp(abs(cosine), 0.1, 1.0)));
+    vec2 at = clamp(t + vec2(-0.25, 0.3) * climb, vec2(nominal.x), vec2(nominal.x + nominal.y));
+    vec2 lower = place_of(origin + at.x * direction), upper = place_of(origin + at.y * direction);
+    Cover cover = cover_through(lower, upper, footprint * t * inversesqrt(clamp(abs(cosine), 0.1, 1.0)));
     float thickness = max(cover.thickness, 1.0e-3);
     float within = geometry_leg(path, leg, layer_base, thickness, cosine, end);
     float whole = geometry_slant(abs(cosine), layer_base, thickness);

@@ -15,7 +15,7 @@ GAP, CLOUD = -0.25 * SIDE, 0.25 * SIDE
 """Metres east: the middles of the open and of the cloudy half of the map."""
 
 
-def thickness(ask: Ask, low: list[float], high: list[float], footprint: float, longer: float = 1.0) -> np.ndarray:
+def thickness(ask: Ask, low: list[float], high: list[float], footprint: float) -> np.ndarray:
     """Thickness that rays meet which are low in the layer at one place and high in it at another, m."""
     picture = np.zeros((64, 64, 4), np.float32)
     picture[..., 0] = picture[..., 3] = MAP
@@ -30,7 +30,7 @@ def thickness(ask: Ask, low: list[float], high: list[float], footprint: float, l
     }
     return ask(
         {"geometry": Flat()},
-        f"cover_through(vec2(low, 0.0), vec2(high, 0.0), {footprint}, {longer}).thickness",
+        f"cover_through(vec2(low, 0.0), vec2(high, 0.0), {footprint}).thickness",
         {"low": np.array(low), "high": np.array(high)},
         1,
         files=FILES,

@@ -149,10 +149,10 @@ def test_gaps_that_are_wide_enough_to_be_seen_stay_open_far_away(shown: Shown, s
         sky = shown("valley", time=time)[1][:10]
         return float((sky[..., 2] > 1.3 * sky[..., 0]).mean())
 
-    assert blue(0.0) > 0.12
-    right, wrong = "footprint * t, inversesqrt", "footprint * t / max(abs(cosine), 0.1), inversesqrt"
+    seen = blue(0.0)
+    right, wrong = "footprint * t * inversesqrt(clamp(abs(cosine), 0.1, 1.0))", "footprint * t / max(abs(cosine), 0.1)"
     with spoil("clouds/stretch.glsl", right, wrong):
-        assert blue(1.0) < 0.09, "a second later, as what was traced at the first moment is kept"
+        assert seen > 1.2 * blue(1.0), "a second later, as what was traced at the first moment is kept"
 
 
 def test_summits_stand_in_the_sun_above_the_layer(shown: Shown) -> None:
