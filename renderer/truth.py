@@ -27,7 +27,7 @@ from renderer.world.state import SceneState
 POSITIONS = 16
 """Sub-pixel positions of a reference, and of the converged picture that is compared with it."""
 
-SECONDS: Mapping[str, tuple[float, float]] = {"forest": (0.0, 160e-6), "clouds": (60.0, 0.0), "shells": (2.0, 160e-6)}
+SECONDS: Mapping[str, tuple[float, float]] = {"forest": (0.0, 160e-6), "clouds": (60.0, 0.0), "shells": (5.0, 60e-6)}
 """What a picture takes on two cores, and each of its rays, to announce the cost: clouds have the same number of paths
 in every picture."""
 
@@ -174,40 +174,46 @@ def _forest_options(state: Any, judge: Judge, cast: Sequence[str] | None) -> dic
     return {"light": state.light.kind if own else "leaf", **sky, **left_out}
 
 
+def _in_two(part: Callable[[np.ndarray, int, Progress], Any], positions: np.ndarray, progress: Progress) -> Arrays:
+    """A reference picture in two parts: the pixels' centres first, whose picture alone is what one sample a pixel
+    shows.
+
+    Args:
+        part: renders some of the positions by a seed that differs by a number; or that number's jitter would repeat.
+    """
+    share = 1 / len(positions)
+    first = part(positions[:1], 0, lambda done, words: progress(done * share, words))
+    linear, error, seconds = first.radiance, first.standard_error, first.seconds
+    regions = getattr(first, "regions", None)
+    if len(positions) > 1:
+        rest = part(positions[1:], 1, lambda done, words: progress(share + done * (1 - share), words))
+        linear = share * first.radiance + (1 - share) * rest.radiance
+        error = np.hypot(share * first.standard_error, (1 - share) * rest.standard_error)
+        seconds = first.seconds + rest.seconds
+        regions = None if regions is None else share * regions + (1 - share) * rest.regions
+    mean = float(linear[..., :3].mean())
+    made = {
+        "linear": linear,
+        "once": first.radiance,
+        "standard_error": np.array(float(np.sqrt(np.mean(error**2))) / mean if mean > 0 else 0.0),
+        "seconds": np.array(seconds),
+    }
+    return made if regions is None else {**made, "regions": regions.astype(np.float32)}
+
+
 def _forest(
     world: Mapping[str, Any], looking: Any, positions: np.ndarray, options: Mapping[str, Any], progress: Progress
 ) -> Arrays:
-    """March the forest: the pixels' centres first, whose picture alone is what one sample a pixel shows."""
+    """March the forest."""
     from renderer.reference.forest import Options, render
     from renderer.reference.forest_world import ForestWorld
 
     forest = ForestWorld(**world)
-    share = 1 / len(positions)
-    first = render(
-        forest, looking, positions[:1], Options(**options), lambda done, words: progress(done * share, words)
+    return _in_two(
+        lambda places, seed, tell: render(forest, looking, places, Options(**options, seed=1 + seed), tell),
+        positions,
+        progress,
     )
-    if len(positions) == 1:
-        linear, error, seconds = first.radiance, first.standard_error, first.seconds
-    else:
-        # another seed, or the second picture's first sample would repeat the jitter of the first picture's
-        rest = render(
-            forest,
-            looking,
-            positions[1:],
-            Options(**options, seed=Options.seed + 1),
-            lambda done, words: progress(share + done * (1 - share), words),
-        )
-        linear = share * first.radiance + (1 - share) * rest.radiance
-        error = np.hypot(share * first.standard_error, (1 - share) * rest.standard_error)
-        seconds = first.seconds + rest.seconds
-    mean = float(linear[..., :3].mean())
-    relative = float(np.sqrt(np.mean(error**2))) / mean if mean > 0 else 0.0
-    return {
-        "linear": linear,
-        "once": first.radiance,
-        "standard_error": np.array(relative),
-        "seconds": np.array(seconds),
-    }
 
 
 def _clouds_options(state: Any, judge: Judge, cast: Sequence[str] | None) -> dict[str, Any]:
@@ -218,72 +224,42 @@ def _clouds_options(state: Any, judge: Judge, cast: Sequence[str] | None) -> dic
 def _clouds(
     world: Mapping[str, Any], looking: Any, positions: np.ndarray, options: Mapping[str, Any], progress: Progress
 ) -> Arrays:
-    """Trace the clouds: the pixels' centres first, whose picture alone is what one sample a pixel shows."""
+    """Trace the clouds."""
     from renderer.reference.clouds import Options, render
     from renderer.reference.clouds_world import CloudsWorld
 
-    clouds, share = CloudsWorld(**world), 1 / len(positions)
-    first = render(clouds, looking, positions[:1], Options(**options), lambda d, words: progress(d * share, words))
-    if len(positions) == 1:
-        linear, error, regions, seconds = first.radiance, first.standard_error, first.regions, first.seconds
-    else:
-        rest = render(
-            clouds,
-            looking,
-            positions[1:],
-            Options(**options, seed=Options.seed + 1),
-            lambda done, words: progress(share + done * (1 - share), words),
-        )
-        linear = share * first.radiance + (1 - share) * rest.radiance
-        error = np.hypot(share * first.standard_error, (1 - share) * rest.standard_error)
-        regions = share * first.regions + (1 - share) * rest.regions
-        seconds = first.seconds + rest.seconds
-    mean = float(linear[..., :3].mean())
-    return {
-        "linear": linear,
-        "once": first.radiance,
-        "regions": regions.astype(np.float32),
-        "standard_error": np.array(float(np.sqrt(np.mean(error**2))) / mean if mean > 0 else 0.0),
-        "seconds": np.array(seconds),
-    }
+    clouds = CloudsWorld(**world)
+    return _in_two(
+        lambda places, seed, tell: render(clouds, looking, places, Options(**options, seed=1 + seed), tell),
+        positions,
+        progress,
+    )
 
 
 def _shells_options(state: Any, judge: Judge, cast: Sequence[str] | None) -> dict[str, Any]:
-    """The light is a part of the shells' world: what shines by itself is judged by what shines."""
-    return {"light": state.light.kind, "level": float(getattr(state.light, "level", 1.0))}
+    """The light is a part of the shells' world: what shines by itself, or scatters on, is judged by what does."""
+    own = state.light.kind in ("unlit", "scattering")
+    return {
+        "light": state.light.kind if own else "lambert",
+        "level": float(getattr(state.light, "level", 1.0)),
+        "asymmetry": float(getattr(state.light, "asymmetry", 0.0)),
+        "shadows": judge != "matter" and cast is None,
+    }
 
 
 def _shells(
     world: Mapping[str, Any], looking: Any, positions: np.ndarray, options: Mapping[str, Any], progress: Progress
 ) -> Arrays:
-    """Follow rays through the shell, the pixels' centres first: their picture is one sample a pixel's."""
+    """Follow rays through the shell."""
     from renderer.reference.shells import Options, render
     from renderer.reference.shells_world import ShellsWorld, Surface
 
     base = world["base"]
     plain = {name: value for name, value in world.items() if name != "base"} | dict(options)
     shells = ShellsWorld(**plain, surfaces=() if base is None else (Surface(**base),))
-    share = 1 / len(positions)
-    first = render(shells, looking, positions[:1], Options(), lambda done, words: progress(share * done, words))
-    linear, error, seconds = first.radiance, first.standard_error, first.seconds
-    if len(positions) > 1:
-        rest = render(
-            shells,
-            looking,
-            positions[1:],
-            Options(seed=Options.seed + 1),
-            lambda done, words: progress(share + done * (1 - share), words),
-        )
-        linear = share * first.radiance + (1 - share) * rest.radiance
-        error = np.hypot(share * first.standard_error, (1 - share) * rest.standard_error)
-        seconds = first.seconds + rest.seconds
-    mean = float(linear[..., :3].mean())
-    return {
-        "linear": linear,
-        "once": first.radiance,
-        "standard_error": np.array(float(np.sqrt(np.mean(error**2))) / mean if mean > 0 else 0.0),
-        "seconds": np.array(seconds),
-    }
+    return _in_two(
+        lambda places, seed, tell: render(shells, looking, places, Options(seed=1 + seed), tell), positions, progress
+    )
 
 
 OPTIONS: dict[str, Callable[[Any, Judge, Sequence[str] | None], dict[str, Any]]] = {

@@ -171,7 +171,8 @@ def gather(begin, end, depth, bright, quantum, strata, state):
     Args:
         bright: (3,) W m-2 sr-1 of the stretch.
         strata: how many there are (1,), the last being gathered; and of each the mean brightness, the distance of the
-            place drawn in it, and the brightness of each channel there over that of their mean (N, 5).
+            place drawn in it, the brightness of each channel there over that of their mean, and that of each channel in
+            all (N, 8).
     """
     count, of = strata
     mean = (bright[0] + bright[1] + bright[2]) / 3.0
@@ -186,6 +187,8 @@ def gather(begin, end, depth, bright, quantum, strata, state):
         if count[0] < STRATA - 1:
             part = min(part, max((quantum - stratum[0]) / mean, 1e-12))
         stratum[0] += part * mean
+        for c in range(3):
+            stratum[5 + c] += part * bright[c]
         if uniform(state) * stratum[0] < part * mean:
             drawn = -math.log1p(-hidden * (done + part * uniform(state)))
             stratum[1] = begin + (end - begin) * min(drawn / depth, 1.0)
@@ -194,7 +197,7 @@ def gather(begin, end, depth, bright, quantum, strata, state):
         done += part
         if stratum[0] >= quantum * (1.0 - 1e-9) and count[0] < STRATA - 1:
             count[0] += 1
-            of[count[0], 0] = 0.0
+            of[count[0], :] = 0.0
 
 
 @inner
@@ -211,9 +214,13 @@ def add_sunlight(scene, o, d, strata, last, light, work, stack, found):
         bright, t = of[n, 0], of[n, 1]
         if bright <= 0.0:
             continue
-        share = sunlight(scene, (o[0] + t * d[0], o[1] + t * d[1], o[2] + t * d[2]), work, stack, found)
+        share = 1.0
+        if scene.kinds[4] != 0:
+            share = sunlight(scene, (o[0] + t * d[0], o[1] + t * d[1], o[2] + t * d[2]), work, stack, found)
+        # the share before stands for this one's but in what they differ by: where it is even, hues have no noise
+        guess = before if n > 0 else last[0] if last[0] >= 0.0 else share
         for c in range(3):
-            light[c] += bright * of[n, 2 + c] * share
+            light[c] += of[n, 5 + c] * guess + bright * of[n, 2 + c] * (share - guess)
         if n == 0:
             first, variance = share, 0.5 * (bright * (share - last[0])) ** 2 if last[0] >= 0.0 else 0.0
         elif n <= count[0]:

@@ -1,4 +1,4 @@
-"""The eye's rays through the shells' reference. Compiled; float64.
+"""The rays of the eye through the shells' reference. Compiled; float64.
 
 Every solid that a ray meets, in the order of its entries; between two borders of solids or voxels the matter of all
 solids there is added up. The sun is looked for along the ray in strata of equal brightness, were it shining freely:
@@ -173,7 +173,7 @@ def _march(scene, o, d, far, quantum, met, here, spare, strata, light, state, st
     left, next_one, t = 1.0, 0, 0.0
     here[2][0] = 0
     strata[0][0] = 0
-    strata[1][0, 0] = 0.0
+    strata[1][0, :] = 0.0
     while left > CLEAR and (here[2][0] > 0 or next_one < total):
         if here[2][0] == 0:
             t = max(t, ways[next_one, 0])
@@ -205,6 +205,7 @@ def _add_face(scene, face, d, t, u, v, left, strata, spare, light):
     for c in range(3):
         light[c] += left * own[c]
         stratum[2 + c] = sunny[c] / max(mean, 1e-300)
+        stratum[5 + c] = left * sunny[c]
     stratum[0], stratum[1] = left * mean, t - scene.numbers[2]
 
 
@@ -228,7 +229,7 @@ def rows(scene, origins, directions, behind, begin, end, quantum, seed, number, 
             np.zeros((MOST, 3), np.int64), np.zeros((MOST, 3)), np.zeros((MOST, 8)), np.zeros(MOST))  # fmt: skip
     spare = (np.zeros(8), np.zeros(3), np.zeros(3), np.zeros(3), np.zeros(3), np.zeros(3))
     light, last = np.zeros(3), np.zeros(1)
-    strata = (np.zeros(1, np.int64), np.zeros((STRATA + 1, 5)))
+    strata = (np.zeros(1, np.int64), np.zeros((STRATA + 1, 8)))
     state = np.zeros(1, np.uint64)
     for row in range(begin, end):
         state[0] = np.uint64(((seed * 1009 + number) * 65536 + row) * 65536 + 1)

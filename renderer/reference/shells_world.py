@@ -62,6 +62,7 @@ class ShellsWorld:
             by Henyey and Greenstein's lobe of mean cosine `asymmetry`, reflectance (at most 1) being the share that is
             scattered, normals left unread.
         sun: unit vector to it. e_sun: irradiance facing it. e_sky: of the sky on the horizontal. All W m-2.
+        shadows: whether they fall, where light is not scattered on.
         surfaces: opaque things; the shells' own base among them where it is opaque.
         background: radiance behind everything, for directions (M, 3) -> (M, 3); None leaves it empty.
     """
@@ -83,6 +84,7 @@ class ShellsWorld:
     e_sky: Colour3 = (0.0, 0.0, 0.0)
     sky_below: float = 0.0
     asymmetry: float = 0.0
+    shadows: bool = True
     surfaces: tuple[Surface, ...] = field(default=())
     background: Callable[[Floats], Floats] | None = None
 
@@ -112,7 +114,7 @@ class Scene(NamedTuple):
         faces: tree of the triangles. corners, normals, albedo: (F, 3, 3). uv: (F, 3, 2). pictures: (F, 3), where its
             texels begin, rows and columns; 0 rows for none. texels: (N, 3) of all pictures.
         numbers: reference length, level, how far off a face a ray begins. lights: (4, 3), sun, e_sun, e_sky, glow.
-        kinds: interpolation, light, whether the texture repeats, whether it has normals.
+        kinds: interpolation, light, whether the texture repeats, whether it has normals, whether shadows fall.
     """
 
     solids: Tree
@@ -180,6 +182,7 @@ def prepare(world: ShellsWorld) -> Scene:
             {"unlit": UNLIT, "lambert": LAMBERT, "scattering": SCATTERING}[world.light],
             world.wrap == "repeat",
             world.normal is not None,
+            world.shadows,
         ], np.int64),
     )  # fmt: skip
 

@@ -106,6 +106,9 @@ def test_a_roof_takes_the_sun_away() -> None:
     sky = np.array([0.8, 0.5, 0.2]) / math.pi * 0.5 * np.array(E_SKY) * alpha(3.0, 0.5)
     assert lit(roof)[0, :3] == pytest.approx(sky), "the sky's light is not shadowed, by its definition"
     assert lit(world)[0, 0] > 1.3 * sky[0]
+    unshadowed = lit(dataclasses.replace(roof, shadows=False))[0, :3]
+    right = np.array([0.8, 0.5, 0.2]) / math.pi * 0.25 * np.array(E_SUN) * alpha(3.0, 0.5)
+    assert unshadowed == pytest.approx(sky + right, rel=1e-6), "by the shell itself, too"
     aside = Surface(roof.surfaces[0].corners + [150.0, 0, 0], roof.surfaces[0].albedo)
     assert lit(dataclasses.replace(world, surfaces=(aside,))) == pytest.approx(lit(world))
 
