@@ -27,7 +27,7 @@ from renderer.world.state import SceneState
 POSITIONS = 16
 """Sub-pixel positions of a reference, and of the converged picture that is compared with it."""
 
-SECONDS: Mapping[str, tuple[float, float]] = {"forest": (0.0, 160e-6), "clouds": (60.0, 0.0), "shells": (5.0, 60e-6)}
+SECONDS: Mapping[str, tuple[float, float]] = {"forest": (0.0, 160e-6), "clouds": (60.0, 0.0), "shells": (5.0, 90e-6)}
 """What a picture takes on two cores, and each of its rays, to announce the cost: clouds have the same number of paths
 in every picture."""
 

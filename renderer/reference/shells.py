@@ -50,7 +50,7 @@ class Options:
         threads: that trace; 0 takes every core.
     """
 
-    sun_rays: int = 128
+    sun_rays: int = 512
     paths: int = 0
     orders: int = 0
     seed: int = 1
