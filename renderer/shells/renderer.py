@@ -76,6 +76,7 @@ class ShellsRenderer:
             "start_tet": holding(arrays["shell"], state.camera),
             "matter_scale": texture.scale * state.voxels.density,
             "reference_length": reference_length(arrays["texture"], state.extrusion.thickness),
+            "normal_coding": texture.coding,
             "filter_coarsest": float(texture.levels),
             "shell_size": tuple(float(side) for side in arrays["texture"]["size"]),
             **uniforms(state.voxels, "voxels"),

@@ -11,7 +11,7 @@ import numpy as np
 from renderer.gl.context import GL
 from renderer.gl.textures import Filter
 from renderer.shells.texture.block import ShellTexture
-from renderer.shells.texture.extinction import Extinct, form_of, halves
+from renderer.shells.texture.extinction import Extinct, bytes_of, form_of, halves
 from renderer.shells.texture.pyramid import Extents, above_pyramid, extents, mean_pyramid, thesis_pyramid
 from renderer.shells.voxels import Voxels
 
@@ -30,12 +30,14 @@ class Uploaded:
     Attributes:
         matter, normal: as shaders/shells/matter.glsl reads them.
         scale: what 1 in them stands for, 1/m. levels: coarser ones.
+        coding: of normals, factor and summand that make them of what is read.
     """
 
     matter: moderngl.Texture3D
     normal: moderngl.Texture3D
     scale: float
     levels: int
+    coding: tuple[float, float]
 
     def release(self) -> None:
         """Free them."""
@@ -62,19 +64,37 @@ def upload(gl: GL, texture: ShellTexture, voxels: Voxels, thickness: float, leve
         parts[0] = texture.colour, texture.normal
     else:
         parts = [(level.matter, level.surface) for level in made]
-    stored = [[_stored(part[which], 1 / greatest, voxels) for part in parts] for which in range(2)]
+    kind = storage_of(voxels, float(texture.colour.max()))
+    stored = [[_stored(part[which], 1 / greatest, kind, which == 1) for part in parts] for which in range(2)]
     side = voxels.wrap
     matter, normal = (gl.texture3d(part[0], _between(voxels), (side, side, "clamp"), part[1:]) for part in stored)
-    return Uploaded(matter, normal, greatest / texture.reference_length, len(made) - 1)
+    coding = (255 / 127, -128 / 127) if kind == "bytes" else (1.0, 0.0)
+    return Uploaded(matter, normal, greatest / texture.reference_length, len(made) - 1, coding)
 
 
 def _between(voxels: Voxels) -> Filter:
     return "nearest" if voxels.interpolation == "nearest" else "linear"
 
 
-def _stored(array: np.ndarray, factor: float, voxels: Voxels) -> np.ndarray:
+def storage_of(voxels: Voxels, brightest: float) -> str:
+    """How numbers are kept: `bytes`, `half` or `float`.
+
+    Bytes are read three times as fast where the CPU draws, and hold colour and alpha, but neither an extinction, which
+    may be a thousandth of another, nor colours above 1.
+
+    Args:
+        brightest: component of the texture's colours.
+    """
+    if voxels.storage != "auto":
+        return voxels.storage
+    return "bytes" if voxels.interpolation == "straight" and brightest <= 1 else "half"
+
+
+def _stored(array: np.ndarray, factor: float, storage: str, signed: bool) -> np.ndarray:
     """An array times a factor in the type that is kept on the GPU."""
-    return halves(array, factor) if voxels.storage == "half" else array * np.float32(factor)
+    if storage == "bytes":
+        return bytes_of(array if factor == 1 else array * np.float32(factor), signed)
+    return halves(array, factor) if storage == "half" else array * np.float32(factor)
 
 
 def _straight(level: Extinct) -> tuple[np.ndarray, np.ndarray]:

@@ -13,7 +13,7 @@ class Voxels(Model):
     """How the 3D texture is read."""
 
     interpolation: Interpolation = param(
-        "extinction",
+        "straight",
         label="Interpolation",
         cost="host",
         help="Between voxels: none; of colour and alpha, each by itself; or of extinction and what it weighs.",
@@ -22,8 +22,11 @@ class Voxels(Model):
     wrap: Literal["repeat", "clamp"] = param(
         "repeat", label="Wrap", cost="host", help="What lies beyond the texture's edges along u and v."
     )
-    storage: Literal["half", "float"] = param(
-        "half", label="Storage", cost="host", help="Type of the voxels' numbers on the GPU."
+    storage: Literal["auto", "bytes", "half", "float"] = param(
+        "auto",
+        label="Storage",
+        cost="host",
+        help="Type of the voxels' numbers on the GPU; auto takes bytes where they hold what is interpolated.",
     )
     density: float = param(
         1.0, label="Density", cost="live", help="Extinction against the texture's own.", ge=0, le=100

@@ -27,6 +27,7 @@ float matter_extinction(vec3 place, float level) {
 // Mean normal of the matter in the world, as short as it disagrees, and the share of glow.
 vec4 matter_normal(vec3 place, float level, Matter matter, mat3 gradients) {
     vec4 texel = textureLod(shell_normal, place, level);
+    texel.xyz = texel.xyz * normal_coding.x + normal_coding.y;
 #if INTERPOLATION != STRAIGHT
     texel *= matter_scale / max(matter.extinction, 1.0e-7 * matter_scale);
 #endif

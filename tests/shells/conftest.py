@@ -28,7 +28,7 @@ PLAIN: dict[str, Any] = {
     "camera": {"kind": "orthographic", "centre": [0, 0, 0], "direction": [0, 0, -1], "up": [0, 1, 0], "width": 1.6},
     "view": {"background": "none"},
     "base": {"opaque": False},
-    "voxels": {"storage": "float"},
+    "voxels": {"interpolation": "extinction", "storage": "float"},
     "light": {"kind": "unlit"},
     "shadow": {"kind": "none"},
     "filter": {"kind": "none"},
