@@ -31,8 +31,11 @@ TOUCH = 1e-9
 FACING = 0.05
 """Cosine to the normals of its faces that an offset has at least, where that is possible."""
 
-MOST_PAIRS = 10_000_000
-"""Pairs of prisms that are looked at closely: 80 MB of them."""
+THICK = 0.1
+"""Share of the mesh's extent beyond which a length counts as no more than that, for `LEAST`."""
+
+MOST_PAIRS = 2_000_000
+"""Pairs of prisms that are looked at closely, a few microseconds each in some twenty rounds."""
 
 TURNS = 60
 """Steps in which such a direction is looked for."""
@@ -87,7 +90,8 @@ class Prisms:
         self.corners = np.concatenate([lower, lower + len(vertices)], axis=1).astype(np.int64)
         a, b = faces.ravel(), np.roll(faces, -1, axis=1).ravel()
         self._edges = (a, b, SLOPE * np.linalg.norm(vertices[a] - vertices[b], axis=1))
-        self._slack = TOUCH * float(np.ptp(vertices, axis=0).max())
+        self._extent = float(np.ptp(vertices, axis=0).max())
+        self._slack = TOUCH * self._extent
 
     def conflicts(self, offset: np.ndarray) -> Conflicts:
         """Conflicts at offsets (V, 3) [m].
@@ -109,22 +113,23 @@ class Prisms:
         if not len(wanted):
             return Clamped(share, wanted, left, np.empty((0, 2), np.int32))
         own = _common(wanted.overlaps, self._overlapping(close, offset * TOUCH**0.5))
-        stuck = self._inverted(offset * LEAST)
-        kept = self._overlapping(close, offset * LEAST)
-        close = _without(close, kept)
         length = np.linalg.norm(offset, axis=1)
+        least = LEAST * min(1.0, THICK * self._extent / float(length.max()))
+        stuck = self._inverted(offset * least)
+        kept = self._overlapping(close, offset * least)
+        close = _without(close, kept)
         overlaps = _without(wanted.overlaps, kept)
         while True:
             now = offset * share[:, None]
             bad = np.concatenate([np.setdiff1d(self._inverted(now), stuck), overlaps.ravel()])
             concerned = np.unique(self.faces[bad])
-            concerned = concerned[share[concerned] > LEAST]
+            concerned = concerned[share[concerned] > least]
             if not len(concerned):
                 return Clamped(share, wanted, self.conflicts(now), own)
             before = share
             share = share.copy()
-            share[concerned] = np.maximum(share[concerned] * STEP, LEAST)
-            share = self._gentle(share, length)
+            share[concerned] = np.maximum(share[concerned] * STEP, least)
+            share = np.maximum(self._gentle(share, length), least)
             active = (share != before)[self.faces].any(axis=1)
             again = active[close].any(axis=1)
             still = overlaps[~active[overlaps].any(axis=1)]
@@ -165,8 +170,8 @@ class Prisms:
             # A cap above the offset's own length changes nothing, and goes no further.
             lower[lower >= length] = np.inf
             if not (lower < cap - 1e-9 * length).any():
-                kept = np.minimum(length, cap) / np.where(length > 0, length, 1)
-                return np.clip(kept, LEAST, 1)
+                kept: np.ndarray = np.minimum(length, cap) / np.where(length > 0, length, 1)
+                return np.where(length > 0, kept, share)
             cap = np.minimum(lower, cap)
 
 
