@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -60,6 +61,9 @@ class Frame:
     ) -> tuple[dict[str, AnyTexture], dict[str, Any]]:
         """A picture of the whole shell seen from the sun, unless it is still there.
 
+        Its rays read the texture at the camera's level, where that is coarser than their own, or the light would
+        belong to other matter than what is seen.
+
         Args:
             name: of the picture. resolution: its side in texels.
             kinds: components and type of each of its textures, by name; all `FAR` where there is nothing.
@@ -72,14 +76,19 @@ class Frame:
         size = (resolution, resolution)
         seen = sun_values(camera, self.place, resolution)
         values = {**self.values, **seen, "picture_size": size, "pixel_offset": (0.5, 0.5)}
-        values |= {"pixel_angle": 0.0, "pixel_side": camera.width / resolution}
+        values |= {"pixel_angle": 0.0, "pixel_side": max(camera.width / resolution, self._pixel())}
         layers = self._entries(("sun", self.shell_key, camera), camera, size, (0.5, 0.5), values)
-        drawn = (name, self.texture_key, self.state.voxels, self.state.filter, variant_of(self.state))
-        made = layers.draw(
-            tuple(kinds.values()), FAR, source(self.state), self.textures, values, drawn
-        )
+        reading = (self.texture_key, self.state.voxels, self.state.filter, variant_of(self.state))
+        drawn = (name, values["pixel_side"], *reading)
+        made = layers.draw(tuple(kinds.values()), FAR, source(self.state), self.textures, values, drawn)
         textures: dict[str, AnyTexture] = {f"shadow_{part}": texture for part, texture in zip(kinds, made, strict=True)}
         return textures, {key: value for key, value in seen.items() if key.startswith("shadow_")}
+
+    def _pixel(self) -> float:
+        """Width of the camera's pixels in the middle of the shell [m], in steps of a quarter of a level."""
+        away = float(np.linalg.norm(pose(self.state.camera).eye - self.place.centre))
+        width = self.values["pixel_side"] + self.values["pixel_angle"] * away
+        return float(2 ** (round(4 * math.log2(max(width, 1e-9))) / 4))
 
     def _entries(
         self, key: Any, camera: Any, size: tuple[int, int], offset: tuple[float, float], values: Mapping[str, Any]
@@ -118,6 +127,9 @@ def sun_camera(place: Placed, sun: np.ndarray) -> Orthographic:
 def sun_values(camera: Orthographic, place: Placed, resolution: int) -> dict[str, Any]:
     """Uniforms of the sun's view: its rays, and how a place finds its texel."""
     values = moved(camera, (resolution, resolution), place.centre)
+    # from just before the shell: distances are short, and keep their digits
+    ahead = reach(camera, place)[0] * np.asarray(values["camera_corner"])
+    values["camera_origin"] = tuple(np.asarray(values["camera_origin"]) + ahead)
     texel = camera.width / resolution
     across, down = (np.asarray(values[f"camera_origin_d{axis}"]) / texel**2 for axis in "xy")
     return values | {

@@ -1,33 +1,51 @@
-// What a ray from the sun passes on its way through the shell: distances at which its optical depth passes four levels.
-// Symbols: depth, optical depth gathered so far; nodes, distances (m) at which it passes SUN_LEVELS, never where it does not.
+// What a ray from the sun passes on its way through the shell: a curve of how much of it is left, by the distances of eight steps.
+// Symbols: near, far: distances (m) at which the share of the sun falls below SUN_NEAR and SUN_FAR; depth, optical depth gathered;
+// stop, where the opaque surface is, in eighths of a texel of the sun's picture, with what is left of the sun there as a fraction.
 
-const vec4 SUN_LEVELS = vec4(0.05, 0.5, 1.5, 5.0);
+const vec4 SUN_NEAR = vec4(6.993, 6.0, 5.0, 4.0) / 7.0;
+const vec3 SUN_FAR = vec3(3.0, 2.0, 1.0) / 7.0;
+const vec4 SUN_FIRST = log(SUN_NEAR / vec4(SUN_NEAR.yzw, SUN_FAR.x)); // depth from step to step
+const vec3 SUN_LAST = log(SUN_FAR / vec3(SUN_FAR.yz, 0.5 * SUN_FAR.z));
+const float SUN_DARK = 1.95; // depth behind the last step, from where the curve goes on as it is
+const float SUN_EIGHTHS = 8.0;
 const float NEVER = 1.0e20;
 
 struct SunWay {
-    vec4 nodes;
+    vec4 near;
+    vec3 far;
+    float stop;
     float depth;
-    float end; // m, where the last matter was
 };
 
+// Even matter from one distance to another.
 void sun_pass(inout SunWay way, float from, float to, float depth) {
-    vec4 share = clamp((SUN_LEVELS - way.depth) / max(depth, 1.0e-12), 0.0, 1.0);
-    vec4 reached = step(SUN_LEVELS, vec4(way.depth + depth)) * step(vec4(NEVER), way.nodes);
-    way.nodes = mix(way.nodes, mix(vec4(from), vec4(to), share), reached);
-    way.end = depth > 1.0e-6 ? to : way.end;
+    vec4 near = (-log(SUN_NEAR) - way.depth) / max(depth, 1.0e-12);
+    vec3 far = (-log(SUN_FAR) - way.depth) / max(depth, 1.0e-12);
+    way.near = mix(way.near, from + near * (to - from), step(0.0, near) * step(near, vec4(1.0)));
+    way.far = mix(way.far, from + far * (to - from), step(0.0, far) * step(far, vec3(1.0)));
     way.depth += depth;
 }
 
-// Nothing of the sun is left from a distance on.
-void sun_stop(inout SunWay way, float at) {
-    way.nodes = min(way.nodes, vec4(at));
-    way.depth = max(way.depth, SUN_LEVELS.w);
-    way.end = at;
+// The opaque surface ends the way. slope: by how many texels it falls within one; the curve's next step, which is not reached,
+// is laid where the curve runs through this end.
+void sun_stop(inout SunWay way, float end, float slope) {
+    way.stop = floor(SUN_EIGHTHS * (end / shadow_texel + slope)) + 0.01 + 0.98 * exp(-way.depth);
+    float before = 0.0, from = way.near.x;
+    for (int i = 0; i < 7 && way.near.x < NEVER; i++) {
+        float level = -log(i < 4 ? SUN_NEAR[i] : SUN_FAR[i - 4]), at = i < 4 ? way.near[i] : way.far[i - 4];
+        if (at >= NEVER) {
+            at = from + (end - from) * (level - before) / max(way.depth - before, 1.0e-9);
+            if (i < 4) way.near[i] = at; else way.far[i - 4] = at;
+            break;
+        }
+        before = level;
+        from = at;
+    }
 }
 
 // Returns whether the ray met the opaque surface on its way.
 bool sun_walk(Ray ray, int tet, float enter, inout SunWay way) {
-    int steps = 0;
+    int steps = 0, face = -1, last = tet;
     do {
         Exit exit = tet_exit(ray, tet, enter);
         Segment segment = tet_segment(ray, tet, enter, exit.t);
@@ -40,14 +58,18 @@ bool sun_walk(Ray ray, int tet, float enter, inout SunWay way) {
             float from = mix(enter, exit.t, lambda);
             sun_pass(way, from, from + length_of_step, depth);
             lambda += share;
-        } while (lambda < 0.999 && way.depth < SUN_LEVELS.w);
+        } while (lambda < 0.999 && way.depth < SUN_DARK);
         enter = exit.t;
-        tet = tet_beyond(tet, exit.face);
+        bool going = steps < 1024; // chosen, not set: see order/walk.glsl
+        face = going ? exit.face : face;
+        last = going ? tet : last;
+        tet = tet_beyond(tet, face);
         steps++;
-    } while (tet >= 0 && steps < 1024 && way.depth < SUN_LEVELS.w);
+    } while (tet >= 0 && steps < 1024 && way.depth < SUN_DARK);
 #if BASE_OPAQUE == 1
     if (tet == BEYOND_BASE) {
-        sun_stop(way, enter);
+        float along = dot(tet_texel(last, max(face, 0)).xyz, ray.direction);
+        sun_stop(way, enter, min(sqrt(max(1.0 - along * along, 0.0)) / max(along, 0.01), 8.0));
         return true;
     }
 #endif

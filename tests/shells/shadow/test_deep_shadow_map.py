@@ -34,10 +34,37 @@ def test_the_ground_lies_in_the_shadow_of_what_is_opaque(draw: Draw) -> None:
     assert below < 0.75 * bright
 
 
+def acne(draw: Draw) -> float:
+    """Share of a bare sphere's light that the sphere's own curve in the map takes from its lit side."""
+    globe = {
+        "surface": {"kind": "sphere", "radius": 0.6, "divisions": 6},
+        "extrusion": {"thickness": 0.15},
+        "camera": {"kind": "orthographic", "centre": [0, 0, 0], "direction": [0, 1, -1], "up": [0, 0, 1], "width": 1.3},
+        "sun": {"kind": "direction", "azimuth": 180.0, "elevation": 50.0},
+        "base": {"opaque": True},
+        "light": {"kind": "lambert"},
+    }
+    seen, bare = (draw({**globe, "shadow": shadow}, even(0.0), size=48) for shadow in (DEEP, {"kind": "none"}))
+    return float(1 - seen[..., 1].sum() / bare[..., 1].sum())
+
+
+def test_the_surface_does_not_shade_itself(draw: Draw) -> None:
+    assert abs(acne(draw)) < 0.01
+
+
+def test_a_surface_without_its_slope_would(draw: Draw, spoil: Callable) -> None:
+    with spoil("shells/sun_walk.glsl", "/ shadow_texel + slope", "/ shadow_texel"):
+        assert acne(draw) > 0.05
+
+
 @pytest.mark.parametrize(
-    ("right", "wrong"),
-    [("return exp(-depth);", "return 1.0 - depth;"), ("float t = dot(from", "float t = 0.8 * dot(from")],
+    ("file", "right", "wrong"),
+    [
+        ("shells/deep_map.glsl", "exp(-depth) : at_surface", "1.0 - depth : at_surface"),
+        ("shells/deep_map.glsl", "float t = dot(from", "float t = 0.8 * dot(from"),
+        ("shells/sun_walk.glsl", "way.depth += depth;", "way.depth += 0.5 * depth;"),
+    ],
 )
-def test_a_curve_that_is_read_wrongly_is_found(draw: Draw, spoil: Callable, right: str, wrong: str) -> None:
-    with spoil("shells/shadow/deep_shadow_map.glsl", right, wrong):
+def test_a_wrong_curve_is_found(draw: Draw, spoil: Callable, file: str, right: str, wrong: str) -> None:
+    with spoil(file, right, wrong):
         assert abs(sun_share(draw, DEEP, 4.0, 60.0) - share(4.0, 60.0)) > 0.05

@@ -1,0 +1,21 @@
+// How much of the sun a map from its side leaves at a place: the curve of one texel.
+//
+// Symbols: near, far: distances from the sun's side (m) at which the share that is left falls below SUN_NEAR and SUN_FAR, the optical
+// depth straight between them and beyond the last; surface, how far a place is behind the opaque surface, on which it lies where
+// that is no more than `slack` either way (m).
+
+float deep_share(vec3 point, float slack) {
+    vec3 from = point - shadow_origin;
+    float noise = fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715))));
+    vec2 jitter = fract(vec2(noise, 7.0 * noise) + sample_shift * vec2(0.7548776662, 0.5698402910)) - 0.5;
+    vec2 place = vec2(dot(from, shadow_across), dot(from, shadow_down)) + shadow_softness * jitter;
+    ivec2 texel = clamp(ivec2(place.x, shadow_side - place.y), ivec2(0), ivec2(shadow_side) - 1);
+    vec4 near = texelFetch(shadow_near, texel, 0), far = texelFetch(shadow_far, texel, 0);
+    float t = dot(from, shadow_along);
+    vec4 first = clamp((t - near) / max(vec4(near.yzw, far.x) - near, 1.0e-9), 0.0, 1.0);
+    vec3 last = max((t - far.xyz) / max(vec3(far.yz, 2.0 * far.z - far.y) - far.xyz, 1.0e-9), 0.0);
+    float depth = dot(first, SUN_FIRST) + dot(vec3(min(last.xy, 1.0), last.z), SUN_LAST);
+    float surface = t - floor(far.w) * shadow_texel / SUN_EIGHTHS;
+    float at_surface = abs(surface) <= slack ? (fract(far.w) - 0.01) / 0.98 : 0.0;
+    return surface < -slack ? exp(-depth) : at_surface;
+}
