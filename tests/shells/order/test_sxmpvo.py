@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 
 from renderer.shells.base_mesh import vertex_normals
+from renderer.shells.order_bench import arrays_of
 from renderer.shells.probe import crossings
 from renderer.shells.resident import placed
-from renderer.shells.shell import Shell
+from renderer.shells.shell import Shell, build_shell
 from renderer.shells.visibility import Order, visibility_order
 from renderer.shells.visibility_kernels import sorted_cells
 from renderer.world.camera import Look, Orbit, Orthographic, rays
@@ -19,9 +20,7 @@ from tests.shells.order.test_walk import GLOBE
 from tests.shells.order.worlds import (
     CYCLE,
     absorber_error,
-    arrays_of,
     bars,
-    build_shell,
     difference,
     ordered,
     two_layers,

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from renderer.shells.base_mesh import BaseMesh
+from renderer.shells.order_bench import arrays_of
 from renderer.shells.shell import Shell, build_shell
-from renderer.shells.shell_bake import GEOMETRY
 from renderer.world.camera import Orbit, rays
 from tests.shells.conftest import even, sigma
 from tests.shells.order.test_walk import GLOBE, hollow_sphere
@@ -73,8 +73,3 @@ def bars(turns: int = 3) -> Shell:
     uv = np.tile(np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]), (turns, 1, 1))
     mesh = BaseMesh(vertices, np.array(faces, np.int32), uv)
     return build_shell(mesh, np.tile([0.0, 0.0, 0.1], (len(vertices), 1)))
-
-
-def arrays_of(shell: Shell) -> dict[str, np.ndarray]:
-    """A shell as its bake gives it to the renderer."""
-    return {**{name: getattr(shell, name) for name in GEOMETRY}, "counts": np.array([shell.edges.open, 0, 0])}
