@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 from scipy.optimize import linprog
 
+from renderer.core.errors import LimitError
+from renderer.shells import clamp
 from renderer.shells.base_mesh import BaseMesh, side_by_side, vertex_normals
 from renderer.shells.clamp import LEAST, SLOPE, Prisms, facing_directions
 from renderer.shells.clamp_kernels import close_prisms, overlapping
@@ -194,3 +196,11 @@ def test_what_cannot_be_repaired_is_told() -> None:
     mesh = ALL["moebius"]
     clamped = Prisms(mesh.vertices, mesh.faces).clamp(offsets(mesh, 0.05))
     assert 0 < len(clamped.left) <= 12
+
+
+def test_too_many_prisms_together_are_refused_in_words(monkeypatch: pytest.MonkeyPatch) -> None:
+    mesh, thickness = THICK["mushroom"]
+    monkeypatch.setattr(clamp, "MOST_PAIRS", 500)
+    with pytest.raises(LimitError, match="more than 500 pairs") as refused:
+        Prisms(mesh.vertices, mesh.faces).clamp(offsets(mesh, thickness))
+    assert refused.value.field == "extrusion.thickness"
