@@ -10,7 +10,7 @@ these relations (Kahn 1962) is the order. Erratum 002-6: relations point from wh
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -20,6 +20,9 @@ from renderer.shells.frame import reach
 from renderer.shells.resident import Placed
 from renderer.shells.visibility_kernels import fragments, neighbours_in_depth, sorted_cells
 from renderer.world.projection import view_projection
+
+if TYPE_CHECKING:
+    from renderer.shells.frame import Frame
 
 TOLD = 256
 """Cells of cycles that are named."""
@@ -64,6 +67,18 @@ def visibility_order(shell: Arrays, place: Placed, camera: Any, size: tuple[int,
     before, after = np.concatenate([before, beyond[0]]), np.concatenate([after, beyond[1]])
     order, cycles = sorted_cells(before, after, np.concatenate([pixels, beyond[2]]), count, told)
     return Order(order, len(before), of_pixels, cycles, _spoken(told))
+
+
+def sorted_for(frame: Frame, fineness: float) -> Order:
+    """The order of a frame's cells, kept while shell, camera and size stay."""
+    width, height = (max(1, round(side * fineness)) for side in frame.size)
+    key = (frame.shell_key, frame.state.camera, width, height)
+    kept = frame.renderer.rasters.kept
+    if kept.get("sxmpvo", (None,))[0] != key:
+        found = visibility_order(frame.arrays["shell"], frame.place, frame.state.camera, (width, height))
+        kept["sxmpvo"] = key, found
+    order: Order = kept["sxmpvo"][1]
+    return order
 
 
 def shared_faces(neighbour: np.ndarray, near: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

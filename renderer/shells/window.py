@@ -12,8 +12,8 @@ from renderer.core.errors import LimitError
 from renderer.gl.source import Source
 from renderer.gl.targets import run_fullscreen
 from renderer.shells.cells import Cells, facing
-from renderer.shells.order.sxmpvo import sorted_for
 from renderer.shells.raster import CELL_DECLARATIONS, UNDER, Canvas, lit_source, placed_values, switched
+from renderer.shells.visibility import sorted_for
 from renderer.world.camera import Orthographic, pose
 
 if TYPE_CHECKING:

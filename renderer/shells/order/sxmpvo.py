@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 import moderngl
 
 from renderer.core.params import param
 from renderer.shells.cells import facing
+from renderer.shells.order.fragment_lists import FragmentLists
 from renderer.shells.raster import UNDER, composing, gather_source, placed_values, switched
 from renderer.shells.technique import OrderTechnique
-from renderer.shells.visibility import Order, visibility_order
+from renderer.shells.visibility import sorted_for
 
 if TYPE_CHECKING:
     from renderer.gl.program import AnyTexture
@@ -34,27 +36,25 @@ class Sxmpvo(OrderTechnique):
         le=4,
     )
 
+    cycles: Literal["broken", "lists"] = param(
+        "broken",
+        label="Cycles",
+        help="Give up the relation that the fewest pixels show; or draw such a picture by fragment lists (OpenGL 4.3).",
+        cost="host",
+    )
+
     def picture(self, frame: Frame) -> tuple[Any, dict[str, AnyTexture], dict[str, Any]]:
         """Sort the cells, unless camera and shell stand as they stood, and draw them."""
         rasters = frame.renderer.rasters
-        cells, canvas = rasters.cells(frame), rasters.canvas(frame)
         order = sorted_for(frame, self.fineness)
         rasters.said |= {"relations": order.relations, "cycles": order.cycles, "cyclic": order.cyclic}
+        if order.cycles and self.cycles == "lists" and rasters.gl.info.version >= FragmentLists.requires:
+            lists = FragmentLists()
+            return lists.picture(replace(frame, state=frame.state.model_copy(update={"order": lists})))
+        cells, canvas = rasters.cells(frame), rasters.canvas(frame)
         cells.arrange(order.cells, facing(frame.arrays["shell"], frame.state.camera))
         canvas.into_gathered.use()
         canvas.into_gathered.depth_mask = False
         with switched(rasters.gl, moderngl.DEPTH_TEST | moderngl.CULL_FACE, UNDER):
             cells.draw(gather_source(frame.state), frame.textures, placed_values(frame))
         return composing(frame, canvas)
-
-
-def sorted_for(frame: Frame, fineness: float) -> Order:
-    """The order of a frame's cells, kept while shell, camera and size stay."""
-    width, height = (max(1, round(side * fineness)) for side in frame.size)
-    key = (frame.shell_key, frame.state.camera, width, height)
-    kept = frame.renderer.rasters.kept
-    if kept.get("sxmpvo", (None,))[0] != key:
-        found = visibility_order(frame.arrays["shell"], frame.place, frame.state.camera, (width, height))
-        kept["sxmpvo"] = key, found
-    order: Order = kept["sxmpvo"][1]
-    return order

@@ -15,6 +15,7 @@ from renderer.shells.shell import Shell, build_shell
 from renderer.shells.visibility import Order, visibility_order
 from renderer.shells.visibility_kernels import sorted_cells
 from renderer.world.camera import Look, Orbit, Orthographic, rays
+from tests.shells.conftest import even, sigma
 from tests.shells.meshes import SOUND
 from tests.shells.order.test_walk import GLOBE
 from tests.shells.order.worlds import (
@@ -80,6 +81,18 @@ def test_a_cycle_costs_one_crossing_alone(draw: Draw) -> None:
     gap = difference(draw, SORTED, CYCLE, 64, bars())
     crossings = difference(draw, ordered("none", depth=False), CYCLE, 64, bars())
     assert 0 < (gap > 2e-3).sum() < 0.1 * (crossings > 2e-3).sum()
+
+
+def test_a_cycle_is_handed_to_lists(draw: Draw) -> None:
+    assert difference(draw, ordered("sxmpvo", cycles="lists"), CYCLE, 64, bars()).max() < 2e-3
+
+
+def test_the_cell_that_holds_the_camera_is_lost(draw: Draw) -> None:
+    """Its faces look away from the camera: the walk alone begins in it."""
+    look = {"kind": "look", "eye": [0.05, 0.02, 0.2], "target": [0.05, 0.02, 1], "up": [0, 1, 0], "field_of_view": 1}
+    whole = draw({"camera": look}, even(0.1))[4, 4, 3]
+    assert whole == pytest.approx(1 - np.exp(-sigma(0.1) * 0.3), abs=1e-4)
+    assert draw({"camera": look, **SORTED}, even(0.1))[4, 4, 3] < 0.8 * whole
 
 
 def test_a_camera_inside_of_a_cell_is_survived() -> None:
