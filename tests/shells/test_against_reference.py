@@ -100,3 +100,10 @@ def test_matter_is_lit_by_its_own_normals(draw: Draw, interpolation: str) -> Non
     assert apart(found, reference(patch, blobs(), tilted(), shadows=False)) < 0.005
     mirrored = tilted() * np.array([-1, 1, 1, 1], np.float32)
     assert apart(found, reference(patch, blobs(), mirrored, shadows=False)) > 0.1
+
+
+@pytest.mark.parametrize("eye", [(0.7, 0.013, 0.021), (0.1, 0.03, 0.02)])
+def test_from_inside_of_the_shell_and_of_its_hollow(draw: Draw, eye: tuple[float, float, float]) -> None:
+    camera = {"kind": "look", "eye": eye, "target": [0.7, 0.5, 0.3], "up": [0, 0, 1], "field_of_view": 90}
+    patch = {**GLOBE, "camera": camera, "sampling": {"kind": "adaptive", "rate": 4.0}}
+    assert apart(draw(patch, blobs(), size=SIZE), reference(patch, blobs())) < 0.002
