@@ -2,13 +2,13 @@
 //
 // Symbols: near, far: distances from the sun's side (m) at which the share that is left falls below SUN_NEAR and SUN_FAR, the optical
 // depth straight between them and beyond the last; surface, how far a place is behind the opaque surface, on which it lies where
-// that is no more than `slack` either way (m).
+// that is no more than `slack` either way (m); softness, width over which texels are read (texels).
 
-float deep_share(vec3 point, float slack) {
+float deep_share(vec3 point, float slack, float softness) {
     vec3 from = point - shadow_origin;
     float noise = fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715))));
     vec2 jitter = fract(vec2(noise, 7.0 * noise) + sample_shift * vec2(0.7548776662, 0.5698402910)) - 0.5;
-    vec2 place = vec2(dot(from, shadow_across), dot(from, shadow_down)) + shadow_softness * jitter;
+    vec2 place = vec2(dot(from, shadow_across), dot(from, shadow_down)) + softness * jitter;
     ivec2 texel = clamp(ivec2(place.x, shadow_side - place.y), ivec2(0), ivec2(shadow_side) - 1);
     vec4 near = texelFetch(shadow_near, texel, 0), far = texelFetch(shadow_far, texel, 0);
     float t = dot(from, shadow_along);
