@@ -26,6 +26,7 @@ uniform sampler2D moment_light;   // light and opacity, as far as they are let t
 GATHERED = """    Ray ray = pixel_ray(gl_FragCoord.xy);
     float near = max(plane_distance(ray, cell_entry), 0.0);
     vec4 sum = vec4(0.0);
+    tet_here = int(number + 0.5) / 4;
     Segment segment = cell_segment(ray, near, cell_a, cell_b, cell_c, cell_u, cell_v, cell_w);
     sampling_segment(ray, segment, sum);
     float z = (segment.near + segment.far - moment_reach.x - moment_reach.y) / (moment_reach.y - moment_reach.x);

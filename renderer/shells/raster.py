@@ -42,6 +42,7 @@ GATHER_BODY = """layout(location = 0) out vec4 gathered;
 void main() {
     Ray ray = pixel_ray(gl_FragCoord.xy);
     float near = max(plane_distance(ray, cell_entry), 0.0);
+    tet_here = int(number + 0.5) / 4;
     vec4 sum = vec4(0.0);
     sampling_segment(ray, cell_segment(ray, near, cell_a, cell_b, cell_c, cell_u, cell_v, cell_w), sum);
     gathered = order_gathered(sum);

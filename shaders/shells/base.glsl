@@ -19,6 +19,7 @@ vec3 base_normal(int tet, vec3 point) {
 // tet, face: through which the ray came to it at `t`; the face's own normal points out of the shell.
 vec3 base_radiance(Ray ray, int tet, int face, float t) {
     vec3 point = ray.origin + t * ray.direction;
+    tet_here = tet;
     bool sunlit = dot(tet_texel(tet, max(face, 0)).xyz, sun_direction) < 0.0;
     return light_base(point, base_normal(tet, point), sunlit, base_colour);
 }

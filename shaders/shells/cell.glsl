@@ -22,6 +22,7 @@ Segment cell_segment(Ray ray, float near, vec4 a, vec4 b, vec4 c, vec4 u, vec4 v
 // The same from a face's number, 4 cell + face, and the distance at which a ray meets it.
 Segment cell_numbered(Ray ray, float near, int number) {
     int tet = number / 4, face = number % 4;
+    tet_here = tet;
     return cell_segment(ray, near, tet_texel(tet, (face + 1) % 4), tet_texel(tet, (face + 2) % 4),
                         tet_texel(tet, (face + 3) % 4), tet_texel(tet, 4), tet_texel(tet, 5), tet_texel(tet, 6));
 }

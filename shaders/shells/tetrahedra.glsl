@@ -9,6 +9,8 @@ const int BEYOND_TOP = -1;    // instead of a neighbour: the shell's top, its ba
 const int BEYOND_BASE = -2;
 const int BEYOND_RIM = -3;
 
+int tet_here = -1;            // that holds what is lit, where the order of drawing tells it
+
 struct Ray {
     vec3 origin;
     vec3 direction; // unit vector

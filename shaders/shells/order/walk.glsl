@@ -8,6 +8,7 @@
 bool order_walk(Ray ray, int tet, float enter, inout vec4 sum) {
     int steps = 0, face = -1, last = tet;
     do {
+        tet_here = tet;
         Exit exit = tet_exit(ray, tet, enter);
         sampling_segment(ray, tet_segment(ray, tet, enter, exit.t), sum);
         sum = accumulation_kept(sum);
