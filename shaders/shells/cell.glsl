@@ -3,17 +3,25 @@
 // Symbols: near, far, distances of entry and exit (m); slack, how far beside a face's true edge a fragment may lie (m), since
 // hardware draws with corners rounded to 1/256 of a pixel. Without it, rays along a prism's side would find it empty.
 
-float cell_leave(Ray ray, float near, vec4 plane) {
-    float slack = pixel_width(near) / 128.0;
+void cell_cut(Ray ray, float enter, float slack, vec4 plane, inout float near, inout float far) {
     float fall = dot(plane.xyz, ray.direction);
-    float outside = dot(plane.xyz, ray.origin + near * ray.direction) + plane.w;
+    float outside = dot(plane.xyz, ray.origin + enter * ray.direction) + plane.w;
     float room = outside > 0.0 ? max(slack - outside, 0.0) : -outside;
-    return fall > 0.0 ? near + room / fall : 1.0e30;
+    far = fall > 0.0 ? min(far, enter + room / fall) : far;
+    float back = fall < 0.0 ? enter - (outside - slack) / fall : 1.0e30;
+    near = fall <= 0.0 && outside > slack ? max(near, back) : near;
 }
 
-Segment cell_segment(Ray ray, float near, vec4 a, vec4 b, vec4 c, vec4 u, vec4 v, vec4 w) {
-    float far = min(min(cell_leave(ray, near, a), cell_leave(ray, near, b)), cell_leave(ray, near, c));
-    far = far < 1.0e29 ? far : near;
+// Where the drawn face lies far beside the cell, nothing is between: pixels that are not drawn at all, which hardware shades
+// along with their neighbours, would else march through the whole world.
+Segment cell_segment(Ray ray, float enter, vec4 a, vec4 b, vec4 c, vec4 u, vec4 v, vec4 w) {
+    float near = enter, far = 1.0e30, slack = pixel_width(enter) / 128.0;
+    cell_cut(ray, enter, slack, a, near, far);
+    cell_cut(ray, enter, slack, b, near, far);
+    cell_cut(ray, enter, slack, c, near, far);
+    bool between = near < far && far < 1.0e29;
+    near = between ? near : enter;
+    far = between ? far : enter;
     vec3 start = vec3(dot(u.xyz, ray.origin) + u.w, dot(v.xyz, ray.origin) + v.w, dot(w.xyz, ray.origin) + w.w);
     vec3 slope = vec3(dot(u.xyz, ray.direction), dot(v.xyz, ray.direction), dot(w.xyz, ray.direction));
     return Segment(start + near * slope, start + far * slope, near, far, mat3(u.xyz, v.xyz, w.xyz));
