@@ -60,8 +60,9 @@ def upload(gl: GL, texture: ShellTexture, voxels: Voxels, thickness: float, leve
     greatest = float(finest.matter[..., 3].max()) or 1.0
     if voxels.interpolation == "straight":
         greatest = 1.0
-        parts = [_straight(level) for level in made]
-        parts[0] = texture.colour, texture.normal
+        parts = [(texture.colour, texture.normal)]
+        for level in made[1:]:
+            parts.append(_straight(level, parts[-1][0]))
     else:
         parts = [(level.matter, level.surface) for level in made]
     kind = storage_of(voxels, float(texture.colour.max()))
@@ -97,11 +98,27 @@ def _stored(array: np.ndarray, factor: float, storage: str, signed: bool) -> np.
     return halves(array, factor) if storage == "half" else array * np.float32(factor)
 
 
-def _straight(level: Extinct) -> tuple[np.ndarray, np.ndarray]:
-    """Colour and alpha of a reference length, and normal and glow, of a level."""
+def _straight(level: Extinct, finer: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Colour and alpha of a reference length, and normal and glow, of a level.
+
+    Args:
+        finer: colour and alpha of the level before, whose colours stand where there is nothing: what is interpolated
+            between matter and nothing must not darken.
+    """
     extinction = level.matter[..., 3:]
     there = np.broadcast_to(extinction > 0, level.matter.shape)
-    colour, surface = (np.divide(part, extinction, out=np.zeros_like(part), where=there)
-                       for part in (level.matter, level.surface))
+    around = _halved(finer)
+    colour = np.divide(level.matter, extinction, out=around, where=there)
+    surface = np.divide(level.surface, extinction, out=np.zeros_like(level.surface), where=there)
     colour[..., 3:] = -np.expm1(-extinction)
     return colour, surface
+
+
+def _halved(array: np.ndarray) -> np.ndarray:
+    """Mean of neighbours (K, J, I, 4) along the first three axes; a last one without a neighbour is left out."""
+    for axis in range(3):
+        count = array.shape[axis]
+        if count > 1:
+            pairs = np.moveaxis(array, axis, 0)[: count // 2 * 2]
+            array = np.moveaxis((pairs[0::2] + pairs[1::2]) / np.float32(2), 0, axis)
+    return np.ascontiguousarray(array)
