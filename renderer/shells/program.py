@@ -58,7 +58,7 @@ void main() {
     // Where the layer before found nothing, nothing is left.
     vec2 before = layer_number > 0 ? texelFetch(entry_before, pixel + ivec2(0, before_row), 0).xy : vec2(-1.0e30, 0.0);
     if (before.y < 0.0 || t <= before.x) discard;
-    entry = vec2(t, float(tet));
+    entry = vec2(t, float(tet) + (BASE_OPAQUE == 1 && int(tet_texel(tet, 7)[owner % 4]) == BEYOND_BASE ? 0.5 : 0.0));
 }"""
 
 WALK_BODY = """layout(location = 0) out vec4 gathered;
@@ -70,6 +70,10 @@ void main() {
     for (int layer = 0; layer < entry_layers && !met && sum.a < OPAQUE; layer++) {
         vec2 entry = entry_of(pixel, layer);
         if (entry.y < 0.0) break;
+        if (entry_behind(entry)) {
+            sum += (1.0 - sum.a) * vec4(base_radiance(ray, int(entry.y), BASE_FACE, entry.x), 1.0);
+            break;
+        }
         met = order_walk(ray, int(entry.y), max(entry.x, 0.0), sum);
     }
     gathered = sum;

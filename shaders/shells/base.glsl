@@ -16,10 +16,12 @@ vec3 base_normal(int tet, vec3 point) {
     return normalize(sum);
 }
 
-// tet, face: through which the ray came to it at `t`; the face's own normal points out of the shell.
+const int BASE_FACE = 3; // of the first tetrahedron of a prism
+
+// tet, face: through which the ray came to it at `t`; the face's own normal points out of the shell. Both sides reflect alike.
 vec3 base_radiance(Ray ray, int tet, int face, float t) {
-    vec3 point = ray.origin + t * ray.direction;
+    vec3 point = ray.origin + t * ray.direction, outward = tet_texel(tet, max(face, 0)).xyz;
     tet_here = tet;
-    bool sunlit = dot(tet_texel(tet, max(face, 0)).xyz, sun_direction) < 0.0;
-    return light_base(point, base_normal(tet, point), sunlit, base_colour);
+    float side = dot(outward, ray.direction) > 0.0 ? 1.0 : -1.0;
+    return light_base(point, side * base_normal(tet, point), side * dot(outward, sun_direction) < 0.0, base_colour);
 }

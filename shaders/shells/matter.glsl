@@ -29,7 +29,7 @@ vec4 matter_normal(vec3 place, float level, Matter matter, mat3 gradients) {
     vec4 texel = textureLod(shell_normal, place, level);
     texel.xyz = texel.xyz * normal_coding.x + normal_coding.y;
 #if INTERPOLATION != STRAIGHT
-    texel *= matter_scale / max(matter.extinction, 1.0e-7 * matter_scale);
+    texel *= matter_scale / max(matter.extinction, max(1.0e-7 * matter_scale, 1.0e-20));
 #endif
     float share = min(length(texel.xyz), 1.0);
     vec3 towards = gradients * (texel.xyz * shell_size);

@@ -34,6 +34,10 @@ void main() {
     do {
         vec2 entry = entry_of(pixel, layer);
         if (entry.y < 0.0) break;
+        if (entry_behind(entry)) {
+            sun_stop(way, entry.x, 1.0);
+            break;
+        }
         met = sun_walk(ray, int(entry.y), max(entry.x, 0.0), way);
         layer++;
     } while (layer < entry_layers && !met && way.depth < SUN_DARK);

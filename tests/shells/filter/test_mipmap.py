@@ -10,7 +10,7 @@ import pytest
 from tests.shells.filter.boards import board, contrast
 
 Draw = Callable[..., np.ndarray]
-MIPMAP = {"kind": "mipmap"}
+MIPMAP = {"kind": "mipmap", "bias": 0.0}
 
 
 def near(draw: Draw) -> float:

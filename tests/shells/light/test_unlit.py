@@ -27,5 +27,5 @@ def test_the_level_is_a_factor_of_light_alone(draw: Draw) -> None:
 
 
 def test_a_wrong_level_is_found(draw: Draw, spoil: Callable) -> None:
-    with spoil("shells/light/unlit.glsl", "matter.colour * light_level", "matter.colour"):
+    with spoil("shells/light/unlit.glsl", "(light_level + glow)", "(1.0 + glow)"):
         assert abs(radiance(draw, 3.0)[0] - 1.297) > 0.5

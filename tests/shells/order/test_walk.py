@@ -122,3 +122,15 @@ def test_another_cells_normal_is_found(draw: Draw, spoil: Callable, file: str, r
 def test_a_wrong_way_is_found(draw: Draw, spoil: Callable, right: str, wrong: str) -> None:
     with spoil(FILE, right, wrong):
         assert error(draw) > 0.01
+
+
+def test_the_opaque_surface_has_two_sides(draw: Draw) -> None:
+    """Seen from below, an open surface hides what stands on it."""
+    camera = {"kind": "orthographic", "centre": [0, 0, 0], "direction": [0, 0, 1], "up": [0, 1, 0], "width": 1.6}
+    found = draw({"camera": camera, "base": {"opaque": True, "colour": [0.2, 0.4, 0.8]}}, even(0.5))
+    assert found[4, 4] == pytest.approx([0.2, 0.4, 0.8, 1.0], abs=1e-5)
+
+
+def test_without_density_nothing_is_seen(draw: Draw) -> None:
+    nothing = {"interpolation": "straight", "density": 0.0}
+    assert not draw({"voxels": nothing, "light": {"kind": "lambert"}}, even(0.5)).any()
