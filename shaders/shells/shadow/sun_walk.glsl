@@ -1,7 +1,8 @@
 // From every place that is lit a ray walks to the sun through the shell's cells, two samples a voxel; where it leaves them, the deep
 // shadow map tells what other parts of the shell have left. After Kajiya and Von Herzen 1984, "Ray tracing volume densities".
 //
-// Symbols: tet, cell of the ray; depth, optical depth gathered. Pictures whose order does not tell the cell have the map alone.
+// Symbols: the paper's optical depth between a place and the light <-> depth [-]; rho <-> matter_extinction [1/m]; tet, cell of the ray.
+// Pictures whose order does not tell the cell have the map alone.
 
 const float SHADOW_DARK = 9.0; // depth behind which nothing is left
 
@@ -28,5 +29,6 @@ float shadow_visibility(vec3 point) {
 #endif
     // A little farther, so that texels' slanting edges do not count the way twice.
     vec3 beyond = point + (enter + shadow_bias * shadow_texel) * sun_direction;
-    return tet_here < 0 ? deep_share(point, shadow_bias * shadow_texel) : exp(-depth) * deep_share(beyond, 0.0);
+    return tet_here < 0 ? deep_share(point, shadow_bias * shadow_texel, shadow_softness)
+                        : exp(-depth) * deep_share(beyond, 0.0, shadow_softness);
 }

@@ -24,7 +24,6 @@ def test_an_even_slab(draw: Draw, depth: float, elevation: float) -> None:
     [
         ("shells/shadow/sun_walk.glsl", "depth += matter_extinction", "depth += 0.3 * matter_extinction"),
         ("shells/shadow/sun_walk.glsl", "float enter = 0.0, depth", "float enter = 0.05, depth"),
-        ("shells/order/walk.glsl", "tet_here = tet;", "tet_here = 0;"),
     ],
 )
 def test_a_wrong_way_is_found(draw: Draw, spoil: Callable, file: str, right: str, wrong: str) -> None:
