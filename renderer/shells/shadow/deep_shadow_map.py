@@ -58,7 +58,7 @@ class DeepShadowMap(ShadowTechnique):
 
     kind: Literal["deep_shadow_map"] = "deep_shadow_map"
     resolution: int = param(
-        512, label="Resolution", help="Texels along a side of the map.", unit="px", cost="host", ge=16, le=4096
+        256, label="Resolution", help="Texels along a side of the map.", unit="px", cost="host", ge=16, le=4096
     )
     bias: float = param(
         1.0, label="Bias", help="How far from the opaque surface its own light still holds.", unit="px", ge=0, le=16
