@@ -9,9 +9,9 @@ import numpy as np
 
 from renderer.gl.source import Source
 from renderer.gl.targets import run_fullscreen
-from renderer.shells.cells import Cells, facing
+from renderer.shells.cells import Cells
 from renderer.shells.frame import reach
-from renderer.shells.raster import CELL_DECLARATIONS, Canvas, lit_source, placed_values, switched
+from renderer.shells.raster import CELL_DECLARATIONS, Canvas, lit_source, placed_values, seen_faces, switched
 
 if TYPE_CHECKING:
     from renderer.shells.frame import Frame
@@ -71,7 +71,7 @@ def draw_by_moments(frame: Frame, cells: Cells, canvas: Canvas, order: np.ndarra
     sums, light = gl.ctx.framebuffer(made[:2], canvas.depth), gl.ctx.framebuffer(made[2:], canvas.depth)
     sums.depth_mask = light.depth_mask = False
     names = ("moment_low", "moment_high", "moment_light")
-    cells.arrange(order, facing(frame.arrays["shell"], frame.state.camera))
+    cells.arrange(order, seen_faces(frame))
     try:
         with switched(gl, moderngl.DEPTH_TEST | moderngl.CULL_FACE, (moderngl.ONE, moderngl.ONE)):
             sums.use()

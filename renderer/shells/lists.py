@@ -14,9 +14,9 @@ import numpy as np
 from renderer.core.errors import LimitError
 from renderer.gl.source import Source
 from renderer.gl.targets import run_fullscreen
-from renderer.shells.cells import Cells, facing
+from renderer.shells.cells import Cells
 from renderer.shells.program import composed, variant_of
-from renderer.shells.raster import CELL_DECLARATIONS, Canvas, lit_source, placed_values, switched
+from renderer.shells.raster import CELL_DECLARATIONS, Canvas, lit_source, placed_values, seen_faces, switched
 from renderer.shells.window import nearest_first
 
 if TYPE_CHECKING:
@@ -73,7 +73,7 @@ def draw_lists(frame: Frame, cells: Cells, canvas: Canvas, most: int) -> tuple[i
         LimitError: `order.most`, more fragments than that, or than one buffer of this machine holds.
     """
     gl, values = frame.renderer.rasters.gl, placed_values(frame)
-    cells.arrange(nearest_first(frame), facing(frame.arrays["shell"], frame.state.camera))
+    cells.arrange(nearest_first(frame), seen_faces(frame))
     lengths = counted(frame, cells, canvas, values)
     ends = np.cumsum(lengths, dtype=np.int64)
     total = int(ends[-1])

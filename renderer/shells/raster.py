@@ -13,14 +13,16 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 import moderngl
+import numpy as np
 
 from renderer.gl.context import GL
 from renderer.gl.layers import check_drawable
 from renderer.gl.program import AnyTexture
 from renderer.gl.source import Source
-from renderer.shells.cells import Cells
+from renderer.shells.cells import Cells, facing
 from renderer.shells.frame import reach
 from renderer.shells.program import LIT_SLOTS, chosen, composed, variant_of
+from renderer.shells.world_scale import BASE
 from renderer.world.projection import view_projection
 
 if TYPE_CHECKING:
@@ -128,9 +130,7 @@ class Rasters:
         canvas.into_gathered.clear(0.0, 0.0, 0.0, 0.0, depth=1.0)
         if frame.state.base.opaque:
             canvas.into_base.use()
-            with switched(self.gl, moderngl.DEPTH_TEST | moderngl.CULL_FACE):
-                # The surface's front is the back of the cells' faces that lie on it.
-                self.gl.ctx.cull_face = "front"
+            with switched(self.gl, moderngl.DEPTH_TEST):
                 self.cells(frame).base.draw(base_source(frame.state), frame.textures, placed_values(frame))
         return canvas
 
@@ -154,11 +154,17 @@ def switched(gl: GL, switches: int, blend: tuple[int, int] | None = None) -> Ite
     finally:
         ctx.enable_only(moderngl.NOTHING)
         ctx.blend_func = moderngl.SRC_ALPHA, moderngl.ONE_MINUS_SRC_ALPHA
-        ctx.cull_face = "back"
 
 
 UNDER = (moderngl.ONE_MINUS_DST_ALPHA, moderngl.ONE)
 """Factors of front-to-back blending of premultiplied colour (erratum 002-3)."""
+
+
+def seen_faces(frame: Frame) -> np.ndarray:
+    """Faces (T, 4) bool of the cells that turn to the camera, without those that an opaque surface covers."""
+    shell = frame.arrays["shell"]
+    near = facing(shell, frame.state.camera)
+    return near & (shell["neighbour"] != BASE) if frame.state.base.opaque else near
 
 
 def placed_values(frame: Frame) -> dict[str, Any]:

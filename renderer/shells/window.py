@@ -11,8 +11,8 @@ import numpy as np
 from renderer.core.errors import LimitError
 from renderer.gl.source import Source
 from renderer.gl.targets import run_fullscreen
-from renderer.shells.cells import Cells, facing
-from renderer.shells.raster import CELL_DECLARATIONS, UNDER, Canvas, lit_source, placed_values, switched
+from renderer.shells.cells import Cells
+from renderer.shells.raster import CELL_DECLARATIONS, UNDER, Canvas, lit_source, placed_values, seen_faces, switched
 from renderer.shells.visibility import sorted_for
 from renderer.world.camera import Orthographic, pose
 
@@ -76,7 +76,7 @@ def draw_through_windows(frame: Frame, cells: Cells, canvas: Canvas, order: np.n
     empty = np.tile(np.array(EMPTY, np.float32), pixels * k).tobytes()
     last = np.full(pixels, -1e30, np.float32).tobytes()
     held = [gl.ctx.buffer(empty), gl.ctx.buffer(last), gl.ctx.buffer(bytes(4 * pixels))]
-    cells.arrange(order, facing(frame.arrays["shell"], frame.state.camera))
+    cells.arrange(order, seen_faces(frame))
     try:
         for binding, buffer in enumerate(held):
             buffer.bind_to_storage_buffer(binding)

@@ -7,9 +7,8 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal
 import numpy as np
 
 from renderer.core.params import param
-from renderer.shells.cells import facing
 from renderer.shells.peeling import peel
-from renderer.shells.raster import composing
+from renderer.shells.raster import composing, seen_faces
 from renderer.shells.technique import OrderTechnique
 
 if TYPE_CHECKING:
@@ -33,6 +32,6 @@ class DepthPeeling(OrderTechnique):
         """Peel the layers, each shaded as it is found."""
         rasters = frame.renderer.rasters
         cells, canvas = rasters.cells(frame), rasters.canvas(frame)
-        cells.arrange(np.arange(cells.count), facing(frame.arrays["shell"], frame.state.camera))
+        cells.arrange(np.arange(cells.count), seen_faces(frame))
         rasters.said["passes"] = peel(frame, cells, canvas, self.passes)
         return composing(frame, canvas)

@@ -8,8 +8,7 @@ import moderngl
 import numpy as np
 
 from renderer.core.params import param
-from renderer.shells.cells import facing
-from renderer.shells.raster import UNDER, composing, gather_source, placed_values, switched
+from renderer.shells.raster import UNDER, composing, gather_source, placed_values, seen_faces, switched
 from renderer.shells.technique import OrderTechnique
 
 if TYPE_CHECKING:
@@ -37,7 +36,7 @@ class NoOrder(OrderTechnique):
         """Draw all cells once."""
         rasters = frame.renderer.rasters
         cells, canvas = rasters.cells(frame), rasters.canvas(frame)
-        cells.arrange(np.arange(cells.count), facing(frame.arrays["shell"], frame.state.camera))
+        cells.arrange(np.arange(cells.count), seen_faces(frame))
         rasters.said["veiled"] = veiled(frame.arrays["texture"]["colour"])
         canvas.into_gathered.use()
         canvas.into_gathered.depth_mask = self.depth

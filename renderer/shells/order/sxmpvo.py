@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal
 import moderngl
 
 from renderer.core.params import param
-from renderer.shells.cells import facing
 from renderer.shells.order.fragment_lists import FragmentLists
-from renderer.shells.raster import UNDER, composing, gather_source, placed_values, switched
+from renderer.shells.raster import UNDER, composing, gather_source, placed_values, seen_faces, switched
 from renderer.shells.technique import OrderTechnique
 from renderer.shells.visibility import sorted_for
 
@@ -52,7 +51,7 @@ class Sxmpvo(OrderTechnique):
             lists = FragmentLists()
             return lists.picture(replace(frame, state=frame.state.model_copy(update={"order": lists})))
         cells, canvas = rasters.cells(frame), rasters.canvas(frame)
-        cells.arrange(order.cells, facing(frame.arrays["shell"], frame.state.camera))
+        cells.arrange(order.cells, seen_faces(frame))
         canvas.into_gathered.use()
         canvas.into_gathered.depth_mask = False
         with switched(rasters.gl, moderngl.DEPTH_TEST | moderngl.CULL_FACE, UNDER):
