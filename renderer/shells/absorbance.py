@@ -53,7 +53,7 @@ WHOLE_BODY = """layout(location = 0) out vec4 gathered;
 void main() {
     vec4 light = texelFetch(moment_light, ivec2(gl_FragCoord.xy), 0);
     float opacity = 1.0 - exp(-texelFetch(moment_low, ivec2(gl_FragCoord.xy), 0).x);
-    gathered = vec4(light.rgb / max(light.a, 1.0e-7) * opacity, opacity);
+    gathered = buffer_of(vec4(light.rgb / max(light.a, 1.0e-7) * opacity, opacity));
 }"""
 
 

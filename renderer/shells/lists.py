@@ -56,7 +56,7 @@ void main() {
         sampling_segment(ray, cell_numbered(ray, max(held.x, 0.0), int(held.y + 0.5)), sum);
         sum = accumulation_kept(sum);
     }
-    gathered = sum;
+    gathered = buffer_of(sum);
 }"""
 
 

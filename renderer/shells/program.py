@@ -40,6 +40,7 @@ uniform vec3 sky_irradiance;      // W m-2
 uniform float pixel_angle;        // rad, width of a pixel in perspective
 uniform float pixel_side;         // m, in a parallel view
 uniform float sample_shift;       // number of the sample, which turns the jitter
+uniform float buffer_white;       // W m-2 sr-1, that 1 stands for where drawn cells are blended
 uniform vec2 picture_size;
 uniform vec2 pixel_offset;        // of the sample within its pixel, from the top-left corner"""
 
@@ -76,7 +77,7 @@ void main() {
         }
         met = order_walk(ray, int(entry.y), max(entry.x, 0.0), sum);
     }
-    gathered = sum;
+    gathered = buffer_of(sum);
 }"""
 
 INSIDE_BODY = WALK_BODY.replace("false", "order_walk(ray, start_tet, 0.0, sum)")
@@ -85,6 +86,7 @@ COMPOSE_BODY = """uniform sampler2D gathered;
 layout(location = 0) out vec4 radiance;
 void main() {
     vec4 sum = texelFetch(gathered, ivec2(gl_FragCoord.xy), 0);
+    sum.rgb *= buffer_white;
     radiance = before_sky(sum.rgb, sum.a, pixel_ray(gl_FragCoord.xy).direction);
 }"""
 

@@ -47,7 +47,7 @@ void main() {
     tet_here = int(number + 0.5) / 4;
     vec4 sum = vec4(0.0);
     sampling_segment(ray, cell_segment(ray, near, cell_a, cell_b, cell_c, cell_u, cell_v, cell_w), sum);
-    gathered = order_gathered(sum);
+    gathered = buffer_of(order_gathered(sum));
 }"""
 
 BASE_BODY = """flat in float number;
@@ -66,6 +66,7 @@ COMPOSE_BODY = """layout(location = 0) out vec4 radiance;
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     vec4 sum = texelFetch(raster_gathered, pixel, 0), base = texelFetch(raster_base, pixel, 0);
+    sum.rgb *= buffer_white;
     if (base.a > 0.0) sum += (1.0 - sum.a) * vec4(base.rgb, 1.0);
     radiance = before_sky(sum.rgb, sum.a, pixel_ray(gl_FragCoord.xy).direction);
 }"""

@@ -73,6 +73,7 @@ class ShellsRenderer:
             "picture_size": size,
             "pixel_offset": offset,
             "sample_shift": float(sample),
+            "buffer_white": state.accumulation.white_radiance(),
             "start_tet": holding(arrays["shell"], state.camera),
             "matter_scale": texture.scale * state.voxels.density,
             "reference_length": reference_length(arrays["texture"], state.extrusion.thickness),

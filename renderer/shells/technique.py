@@ -59,3 +59,7 @@ class AccumulationTechnique(ShellsTechnique):
 
     dtype: ClassVar[str]
     """moderngl's name of a target's component type."""
+
+    def white_radiance(self) -> float:
+        """What 1 stands for in a target [W m-2 sr-1]."""
+        return 1.0

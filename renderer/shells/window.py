@@ -39,7 +39,7 @@ void main() {
         order_leaves(pixel, held);
         sampling_segment(ray, cell_numbered(ray, max(held.x, 0.0), int(held.y + 0.5)), sum);
     }
-    gathered = sum;
+    gathered = buffer_of(sum);
 }"""
 
 REST_BODY = """layout(location = 0) out vec4 gathered;
@@ -55,7 +55,7 @@ void main() {
             sum = accumulation_kept(sum);
         }
     }
-    gathered = sum;
+    gathered = buffer_of(sum);
 }"""
 
 

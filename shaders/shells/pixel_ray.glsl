@@ -9,3 +9,8 @@ Ray pixel_ray(vec2 frag_coord) {
 float pixel_width(float distance) {
     return pixel_side + pixel_angle * distance;
 }
+
+// What a picture's buffer holds of light and opacity: `buffer_white` stands for 1.
+vec4 buffer_of(vec4 sum) {
+    return sum / vec4(vec3(buffer_white), 1.0);
+}
