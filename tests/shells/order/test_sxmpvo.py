@@ -12,6 +12,7 @@ from renderer.shells.order_bench import arrays_of
 from renderer.shells.probe import crossings
 from renderer.shells.resident import placed
 from renderer.shells.shell import Shell, build_shell
+from renderer.shells.surfaces import Planks
 from renderer.shells.visibility import Order, visibility_order
 from renderer.shells.visibility_kernels import sorted_cells
 from renderer.world.camera import Look, Orbit, Orthographic, rays
@@ -75,6 +76,16 @@ def test_a_cycle_is_found_and_named() -> None:
     assert sorted(cycle) == list(range(9))
     assert sorted(found.cells) == list(range(9))
     assert order_of(bars(), Orthographic(centre=(0, 0, 0), direction=(0, 1, 0), up=(0, 0, 1), width=2.4)).cycles == 0
+
+
+def test_planks_in_a_ring_have_cycles_until_they_are_cut() -> None:
+    """Cells of a plank over and under others at once; cut in two, each cell does one of the two alone."""
+    for planks, cyclic in ((Planks(), True), (Planks(along=2), False)):
+        mesh = planks.mesh()
+        found = order_of(build_shell(mesh, 0.03 * vertex_normals(mesh.vertices, mesh.faces)), ABOVE, 128)
+        assert (found.cycles > 0) == cyclic
+        assert all(len(cycle) > 2 for cycle in found.cyclic)
+        assert sorted(found.cells) == list(range(len(mesh.faces) * 3))
 
 
 def test_a_cycle_costs_one_crossing_alone(draw: Draw) -> None:
