@@ -43,16 +43,16 @@ def fragments(corners, width, height):
             last_i = min(int(np.floor((min(high_x, 1.0) + 1) * 0.5 * width - 0.5)), width - 1)
             first_j = max(int(np.ceil((max(low_y, -1.0) + 1) * 0.5 * height - 0.5)), 0)
             last_j = min(int(np.floor((min(high_y, 1.0) + 1) * 0.5 * height - 0.5)), height - 1)
-            ax, ay, ac = (y1 * w2 - y2 * w1), (x2 * w1 - x1 * w2), (x1 * y2 - x2 * y1)
-            bx, by, bc = (y2 * w0 - y0 * w2), (x0 * w2 - x2 * w0), (x2 * y0 - x0 * y2)
-            cx, cy, cc = (y0 * w1 - y1 * w0), (x1 * w0 - x0 * w1), (x0 * y1 - x1 * y0)
+            part = 1.0 / determinant
+            ax, ay, ac = (y1 * w2 - y2 * w1) * part, (x2 * w1 - x1 * w2) * part, (x1 * y2 - x2 * y1) * part
+            bx, by, bc = (y2 * w0 - y0 * w2) * part, (x0 * w2 - x2 * w0) * part, (x2 * y0 - x0 * y2) * part
+            cx, cy, cc = (y0 * w1 - y1 * w0) * part, (x1 * w0 - x0 * w1) * part, (x0 * y1 - x1 * y0) * part
             for j in range(first_j, last_j + 1):
                 y = (j + 0.5) * 2 / height - 1
+                a0, b0, c0 = ay * y + ac, by * y + bc, cy * y + cc
                 for i in range(first_i, last_i + 1):
                     x = (i + 0.5) * 2 / width - 1
-                    a = (ax * x + ay * y + ac) / determinant
-                    b = (bx * x + by * y + bc) / determinant
-                    c = (cx * x + cy * y + cc) / determinant
+                    a, b, c = ax * x + a0, bx * x + b0, cx * x + c0
                     if a < 0 or b < 0 or c < 0 or a + b + c <= 0:
                         continue
                     pixel = j * width + i
