@@ -10,7 +10,9 @@ void sampling_segment(Ray ray, Segment segment, inout vec4 sum) {
     vec3 voxels = (segment.to - segment.from) * vec3(textureSize(shell_matter, 0)) * exp2(-level);
     float share = 1.0 / clamp(ceil(length(voxels) * sampling_rate), 1.0, float(SAMPLING_MOST));
     float length_of_step = (segment.far - segment.near) * share;
-    float lambda = 0.5 * share;
+    // Elsewhere within their steps from picture to picture, or the steps would show in the shade of surfaces.
+    float noise = fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715))) + 0.6180340 * sample_shift);
+    float lambda = (0.5 + sampling_jitter * (noise - 0.5)) * share;
     do {
         vec4 part = vec4(0.0);
         float middle = 0.0, most = 0.0, place = lambda, extinction = 0.0;
