@@ -25,7 +25,7 @@ Report = Callable[[Progress], None]
 PASSES = 16
 """Samples at each of the reference's positions, differing in their jitter: their mean is the method without noise."""
 
-NOISY = frozenset({"forest"})
+NOISY = frozenset({"forest", "shells"})
 """Scenes whose samples differ at one position, too."""
 
 REFERENCE_SHARE = 0.95

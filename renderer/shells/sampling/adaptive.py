@@ -18,7 +18,7 @@ class Adaptive(ShellsTechnique):
     kind: Literal["adaptive"] = "adaptive"
     rate: float = param(0.7, label="Rate", help="Samples a voxel.", ge=0.05, le=64)
     jitter: float = param(
-        1.0, label="Jitter", help="Share of a step by which samples move from picture to picture.", unit="ratio", ge=0, le=1
+        1.0, label="Jitter", help="By how much of a step samples move between pictures.", unit="ratio", ge=0, le=1
     )
     lit: float = param(
         0.5, label="Lit", help="Opacity of the samples that share one look at the light.", unit="ratio", ge=0, le=1
