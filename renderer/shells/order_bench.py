@@ -16,6 +16,7 @@ from renderer.core.technique import Arrays, BakedArrays
 from renderer.gl.context import GL
 from renderer.gl.targets import Target
 from renderer.shells.base_mesh import BaseMesh, from_corners, vertex_normals
+from renderer.shells.order_errors import order_error
 from renderer.shells.renderer import ShellsRenderer
 from renderer.shells.resident import placed
 from renderer.shells.shell import Shell, build_shell
@@ -33,6 +34,9 @@ LAYERS = (1, 2, 4, 8)
 
 DIVISIONS = (2, 3, 5, 8, 12, 17, 24)
 """Of the hollow sphere, from 144 cells to 20,736: the thesis goes from 48 to 4,750, which have 19,000 triangles."""
+
+DRIFTS = (0.0, 1.0, 2.0, 5.0, 10.0, 20.0)
+"""Degrees by which a camera has moved since its order was found."""
 
 CAMERA = Orbit(target=(0, 0, 0), distance=3, azimuth=30, elevation=9, field_of_view=40)
 
@@ -142,6 +146,37 @@ def peel_times(
         draw(shell)
         spent, said = quickest(lambda: draw(shell), turns)  # noqa: B023
         rows.append({"sheets": count, "cells": len(shell["tets"]), "passes": said["passes"], "ms": spent})
+    return rows
+
+
+def drift_errors(
+    draw: Callable[[float], tuple[np.ndarray, int]],
+    exact: Callable[[float], np.ndarray],
+    degrees: Sequence[float] = DRIFTS,
+) -> list[dict[str, float]]:
+    """How wrong an order becomes that was sorted for a camera a while ago: Dufort 2005, section 4.3.1.
+
+    Args:
+        draw: the picture (H, W, 4) of a camera turned by an angle [deg], and its pixels out of order. It is asked for 0
+            first, and keeps the order that it finds there.
+        exact: the same picture in the exact order. degrees: angles.
+
+    Returns:
+        rows of `degrees`, `out_of_order`, `wrong` and `relative_rmse`, those of `order_error`.
+    """
+    draw(0.0)
+    rows = []
+    for angle in degrees:
+        picture, late = draw(angle)
+        error = order_error(picture, exact(angle))
+        rows.append(
+            {
+                "degrees": angle,
+                "out_of_order": late,
+                "wrong": error.wrong,
+                "relative_rmse": error.relative_rmse,
+            }
+        )
     return rows
 
 

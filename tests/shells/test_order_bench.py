@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 import pytest
@@ -12,11 +13,15 @@ from renderer.core.cache import Cache
 from renderer.core.params import validate
 from renderer.core.technique import BakedArrays
 from renderer.gl.context import GL
+from renderer.gl.targets import Target
 from renderer.gl.thread import GLThread
 from renderer.shells.bakes import bakes
-from renderer.shells.order_bench import Drawer, hollow_sphere, peel_times, sheets, sort_times
+from renderer.shells.order_bench import Drawer, drift_errors, hollow_sphere, peel_times, sheets, sort_times
+from renderer.shells.renderer import ShellsRenderer
 from renderer.shells.state import ShellsState
 from tests.shells.conftest import PLAIN
+from tests.shells.order.test_walk import GLOBE
+from tests.shells.order.worlds import ordered, patches
 
 
 def test_sheets_hold_as_many_cells_however_many_there_are() -> None:
@@ -45,6 +50,50 @@ def test_a_layer_more_is_three_passes_more(thread: GLThread) -> None:
     baked = {bake.name: BakedArrays(bake_key(bake), bake_now(bake, cache)) for bake in bakes(state)}
     rows = thread.call(_peeled, state, baked)
     assert [row["passes"] for row in rows] == [3, 6, 12]
+
+
+def test_an_order_of_a_while_ago_is_worse_the_farther_the_camera_is(thread: GLThread) -> None:
+    """The camera turns round a sphere of patches; a window of one cell keeps SXMPVO's order as it was found."""
+    rows = thread.call(_drifted, baked_for({**GLOBE, "order": ordered("k_buffer")["order"]}))
+    late = [row["out_of_order"] for row in rows]
+    assert late[0] <= 1
+    assert late[0] < late[1] < late[2]
+    assert rows[0]["wrong"] < 0.002
+    assert rows[0]["wrong"] < rows[2]["wrong"] < 0.2
+
+
+def _drifted(gl: GL, baked: Mapping[str, BakedArrays]) -> list[dict[str, float]]:
+    renderer, target = ShellsRenderer(gl), Target(gl, 48, 48)
+
+    def drawn(angle: float, order: dict[str, Any]) -> tuple[np.ndarray, int]:
+        camera = {**GLOBE["camera"], "azimuth": GLOBE["camera"]["azimuth"] + angle}
+        state = validate(ShellsState, {**PLAIN, **GLOBE, "camera": camera, "order": order})
+        prepared = renderer.prepare(state, baked, (48, 48), (0.5, 0.5), 0)
+        target.use()
+        renderer.draw(prepared)
+        return target.read(), renderer.rasters.said.get("out_of_order", 0)
+
+    kept = {"kind": "k_buffer", "k": 1, "presort": "sxmpvo", "drift": 180.0}
+    try:
+        return drift_errors(lambda at: drawn(at, kept), lambda at: drawn(at, {"kind": "walk"})[0], (0.0, 5.0, 20.0))
+    finally:
+        renderer.release()
+        target.release()
+
+
+def baked_for(patch: dict[str, Any]) -> dict[str, BakedArrays]:
+    """What a document needs, its texture patches of many colours."""
+    state, cache = validate(ShellsState, {**PLAIN, **patch}), Cache()
+    arrays = {bake.name: BakedArrays(bake_key(bake), bake_now(bake, cache)) for bake in bakes(state)}
+    block = patches()
+    texture = {
+        "colour": block,
+        "normal": np.zeros_like(block),
+        "material": np.ones(block.shape[:3], np.uint8),
+        "size": np.ones(3),
+        "reference_length": np.array(0.1),
+    }
+    return {**arrays, "texture": BakedArrays("patches", texture)}
 
 
 def _peeled(gl: GL, state: ShellsState, baked: Mapping[str, BakedArrays]) -> list[dict[str, float]]:
