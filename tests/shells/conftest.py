@@ -32,7 +32,7 @@ PLAIN: dict[str, Any] = {
     "light": {"kind": "unlit"},
     "shadow": {"kind": "none"},
     "filter": {"kind": "none"},
-    "sampling": {"kind": "adaptive", "rate": 1.0, "jitter": 0.0},
+    "sampling": {"kind": "adaptive", "rate": 1.0, "jitter": 0.0, "most": 256},
 }
 """A level square of 2 m under a shell of half a metre, seen from above; matter shines by itself."""
 

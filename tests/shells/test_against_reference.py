@@ -75,7 +75,7 @@ def apart(found: np.ndarray, right: np.ndarray) -> float:
 def test_emission_and_absorption_over_a_sphere(draw: Draw, interpolation: str) -> None:
     """Within the half of a percent that is asked of the accurate technique."""
     patch = {**GLOBE, "voxels": {"interpolation": interpolation, "storage": "float"},
-             "sampling": {"kind": "adaptive", "rate": 4.0, "jitter": 0.0}}  # fmt: skip
+             "sampling": {"kind": "adaptive", "rate": 4.0, "jitter": 0.0, "most": 256}}  # fmt: skip
     found = draw(patch, blobs(), size=SIZE)
     right = reference(patch, blobs())
     assert apart(found, right) < 0.005
@@ -95,7 +95,7 @@ def test_the_opaque_surface_faces_the_sun_everywhere(draw: Draw) -> None:
 def test_matter_is_lit_by_its_own_normals(draw: Draw, interpolation: str) -> None:
     patch = {**GLOBE, "voxels": {"interpolation": interpolation, "storage": "float"}, "light": {"kind": "lambert"},
              "sun": {"kind": "direction", "azimuth": 60, "elevation": 35},
-             "sampling": {"kind": "adaptive", "rate": 16.0, "lit": 0.0, "jitter": 0.0}}  # fmt: skip
+             "sampling": {"kind": "adaptive", "rate": 16.0, "lit": 0.0, "jitter": 0.0, "most": 256}}  # fmt: skip
     found = draw(patch, blobs(), tilted(), size=SIZE)
     assert apart(found, reference(patch, blobs(), tilted(), shadows=False)) < 0.005
     mirrored = tilted() * np.array([-1, 1, 1, 1], np.float32)
@@ -105,5 +105,5 @@ def test_matter_is_lit_by_its_own_normals(draw: Draw, interpolation: str) -> Non
 @pytest.mark.parametrize("eye", [(0.7, 0.013, 0.021), (0.1, 0.03, 0.02)])
 def test_from_inside_of_the_shell_and_of_its_hollow(draw: Draw, eye: tuple[float, float, float]) -> None:
     camera = {"kind": "look", "eye": eye, "target": [0.7, 0.5, 0.3], "up": [0, 0, 1], "field_of_view": 90}
-    patch = {**GLOBE, "camera": camera, "sampling": {"kind": "adaptive", "rate": 4.0, "jitter": 0.0}}
+    patch = {**GLOBE, "camera": camera, "sampling": {"kind": "adaptive", "rate": 4.0, "jitter": 0.0, "most": 256}}
     assert apart(draw(patch, blobs(), size=SIZE), reference(patch, blobs())) < 0.002

@@ -22,7 +22,7 @@ def ramp(layers: int) -> np.ndarray:
 
 
 def opacity(draw: Draw, block: np.ndarray) -> float:
-    return float(draw({"sampling": {"kind": "adaptive", "jitter": 0.0}}, block)[4, 4, 3])
+    return float(draw({"sampling": {"kind": "adaptive", "jitter": 0.0, "most": 256}}, block)[4, 4, 3])
 
 
 def test_a_ramp_of_extinction(draw: Draw) -> None:
