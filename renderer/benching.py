@@ -207,8 +207,8 @@ OWN = ""
 
 
 def suns_of(scene: str) -> tuple[str, ...]:
-    """Suns under which a scene's presets are pictured: what a cloud shows, it shows under its own."""
-    return (OWN,) if scene == "clouds" else tuple(SUNS)
+    """Suns under which a scene's presets are pictured: what clouds and shells show, they show under their own."""
+    return (OWN,) if scene in ("clouds", "shells") else tuple(SUNS)
 
 
 def pictured(session: Session, scene: str, preset: str, sun: str) -> SceneState:

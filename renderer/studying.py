@@ -34,6 +34,9 @@ PASSES = 64
 """Times that each position of a picture is drawn: four times as often as for the page's comparisons, or the sampling
 noise that is left would count as an error of the best methods (0.03 of the mean at 16)."""
 
+FEWER_PASSES: Mapping[str, int] = {"shells": 4}
+"""The same for scenes whose samples differ little at one position."""
+
 
 @dataclass
 class Study:
@@ -50,6 +53,11 @@ class Study:
     tell: Tell | None = None
     _pictures: dict[str, Drawn] = field(default_factory=dict)
     _truths: dict[str, Drawn] = field(default_factory=dict)
+
+    @property
+    def passes(self) -> int:
+        """Times that each position is drawn."""
+        return FEWER_PASSES.get(self.plan.scene, PASSES)
 
     def cases(self) -> Iterator[Case]:
         """Every case; those that share a reference are neighbours."""
@@ -76,7 +84,7 @@ class Study:
         state = self._state(case)
         name = state.model_dump_json(warnings=False)
         if name not in self._pictures:
-            self._pictures[name] = converged(self.session, state, self.plan.size, self.plan.size, PASSES)
+            self._pictures[name] = converged(self.session, state, self.plan.size, self.plan.size, self.passes)
         return self._pictures[name]
 
     def truth(self, case: Case) -> Drawn:
@@ -89,7 +97,7 @@ class Study:
         here = Path(renderer.__path__[0])
         code = code_of(SHADERS, here / self.plan.scene, here / "world", here / "gl")
         bakes = [bake_key(bake) for bake in phenomenon(self.plan.scene).bakes(state)]
-        return key_of(code, bakes, self._bake(case, self.plan.judge), state.model_dump(mode="json"), PASSES)
+        return key_of(code, bakes, self._bake(case, self.plan.judge), state.model_dump(mode="json"), self.passes)
 
     def _differs(self, case: Case) -> bool:
         """Whether the picture's own light is another than the reference's, whichever sky both have."""

@@ -14,6 +14,13 @@ _PLAIN = {
 
 _INSIDE = {"kind": "look", "eye": [0.1, 0.2, 0.2], "target": [1, 1, 0.2], "up": [0, 0, 1], "field_of_view": 60}
 
+_EVEN = {
+    "filter": {"kind": "none"},
+    "texture": {"kind": "uniform", "optical_depth": 1.5, "colour": [0.8, 0.8, 0.8]},
+    "view.background": "none",
+}
+"""White matter, the same everywhere, lit by the sun: all that its picture shows is how the light fades in it."""
+
 
 def _orbit(distance: float, azimuth: float, elevation: float, field_of_view: float = 40) -> dict[str, object]:
     return {
@@ -224,5 +231,31 @@ FAILURES = (
         threshold=0.05,
         measured=(0.383, 5.33e-05),
         cause="Each cell adds less than a step of a byte or two, and is rounded to bands or to nothing.",
+    ),
+    Failure(
+        name="acne_inside",
+        title="A shadow map's acne inside of matter",
+        slot="shadow",
+        failing="shadow_map:bias=0",
+        surviving="deep_shadow_map",
+        preset="jelly",
+        sets=_EVEN,
+        symptom="error",
+        threshold=0.12,
+        measured=(0.224, 0.0299),
+        cause="Where light fades there is no surface: one depth cuts it into lit and dark, along steps that found it.",
+    ),
+    Failure(
+        name="one_depth_in_fog",
+        title="Fog is lit or dark, and nothing between",
+        slot="shadow",
+        failing="shadow_map",
+        surviving="deep_shadow_map",
+        preset="plane_fog",
+        sets=_EVEN,
+        symptom="error",
+        threshold=0.1,
+        measured=(0.193, 0.0261),
+        cause="One depth a texel has all of the sun before it and none behind, where fog takes it bit by bit.",
     ),
 )
