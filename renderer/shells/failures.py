@@ -175,7 +175,7 @@ FAILURES = (
         symptom="error",
         threshold=0.08,
         measured=(0.132, 0.0299),
-        cause="A grazing ray stays in one thin cell over many voxels, and ten samples, or eight at most, step over them.",
+        cause="A grazing ray stays in one thin cell over many voxels; ten samples, or at most eight, step over them.",
     ),
     Failure(
         name="opacity_by_step_count",
