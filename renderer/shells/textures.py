@@ -23,6 +23,10 @@ PYRAMIDS: dict[str, Callable[[Extinct, Extents], list[Extinct]]] = {
 """How coarser levels are made, by the word of the technique `mipmap`."""
 
 
+THIN = 0.1
+"""Opacity of a reference length below which bytes would err by more than a hundredth of what is seen."""
+
+
 @dataclass(frozen=True)
 class Uploaded:
     """A texture on the GPU, and what its numbers stand for.
@@ -65,7 +69,7 @@ def upload(gl: GL, texture: ShellTexture, voxels: Voxels, thickness: float, leve
             parts.append(_straight(level, parts[-1][0]))
     else:
         parts = [(level.matter, level.surface) for level in made]
-    kind = storage_of(voxels, float(texture.colour.max()))
+    kind = storage_of(voxels, float(texture.colour[..., :3].max()), float(texture.colour[..., 3].max()))
     stored = [[_stored(part[which], 1 / greatest, kind, which == 1) for part in parts] for which in range(2)]
     side = voxels.wrap
     matter, normal = (gl.texture3d(part[0], _between(voxels), (side, side, "clamp"), part[1:]) for part in stored)
@@ -77,18 +81,18 @@ def _between(voxels: Voxels) -> Filter:
     return "nearest" if voxels.interpolation == "nearest" else "linear"
 
 
-def storage_of(voxels: Voxels, brightest: float) -> str:
+def storage_of(voxels: Voxels, brightest: float, densest: float) -> str:
     """How numbers are kept: `bytes`, `half` or `float`.
 
     Bytes are read three times as fast where the CPU draws, and hold colour and alpha, but neither an extinction, which
-    may be a thousandth of another, nor colours above 1.
+    may be a thousandth of another, nor colours above 1, nor opacities that are all of a few steps.
 
     Args:
-        brightest: component of the texture's colours.
+        brightest: component of the texture's colours. densest: of its opacities.
     """
     if voxels.storage != "auto":
         return voxels.storage
-    return "bytes" if voxels.interpolation == "straight" and brightest <= 1 else "half"
+    return "bytes" if voxels.interpolation == "straight" and brightest <= 1 and densest >= THIN else "half"
 
 
 def _stored(array: np.ndarray, factor: float, storage: str, signed: bool) -> np.ndarray:

@@ -24,5 +24,5 @@ class Adaptive(ShellsTechnique):
         0.5, label="Lit", help="Opacity of the samples that share one look at the light.", unit="ratio", ge=0, le=1
     )
     most: int = param(
-        8, label="Most samples", help="Of one segment.", cost="build", unit="count", ge=1, le=4096
+        16, label="Most samples", help="Of one segment.", cost="build", unit="count", ge=1, le=4096
     )
