@@ -65,7 +65,7 @@ import gc
 
 blocks = [np.zeros(5000, np.uint8) for _ in range(100)]
 for block in blocks:
-    ctypes.memset(block.ctypes.data, 1, 5032)
+    ctypes.memset(block.ctypes.data, 1, 5004)
 del block, blocks
 gc.collect()
 """
