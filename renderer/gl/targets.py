@@ -262,8 +262,8 @@ def run_covered(gl: GL, fragment: Source, textures: Mapping[str, AnyTexture], va
     Args:
         fragment, textures, values: as of `run_fullscreen`.
     """
-    program = gl.programs.get(stage("stages/far.vert"), fragment)
-    set_uniforms(program, values)
+    program = gl.programs.get(stage("stages/at_depth.vert"), fragment)
+    set_uniforms(program, {**values, "stage_depth": 1.0})
     bind_textures(program, textures)
     gl.ctx.enable_only(moderngl.DEPTH_TEST)
     gl.ctx.depth_func = ">"

@@ -67,7 +67,7 @@ void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     Ray ray = pixel_ray(gl_FragCoord.xy);
     vec4 sum = vec4(0.0);
-    bool met = false;
+    bool met = %s;
     for (int layer = 0; layer < entry_layers && !met && sum.a < OPAQUE; layer++) {
         vec2 entry = entry_of(pixel, layer);
         if (entry.y < 0.0) break;
@@ -79,8 +79,6 @@ void main() {
     }
     gathered = buffer_of(sum);
 }"""
-
-INSIDE_BODY = WALK_BODY.replace("false", "order_walk(ray, start_tet, 0.0, sum)")
 
 COMPOSE_BODY = """uniform sampler2D gathered;
 layout(location = 0) out vec4 radiance;
@@ -130,7 +128,7 @@ def entry_source(variant: Variant) -> Source:
 
 def walk_source(state: ShellsState, inside: bool) -> Source:
     """The fragment stage that walks each ray through the shell, from the camera's cell where it is inside of one."""
-    body = INSIDE_BODY if inside else WALK_BODY
+    body = WALK_BODY % ("order_walk(ray, start_tet, 0.0, sum)" if inside else "false")
     return composed(chosen(state, LIT_SLOTS), variant_of(state), ("shells/entry.glsl",), body)
 
 
