@@ -1,0 +1,27 @@
+// Directions of a hemisphere, numbered row by row from the horizon up, the zenith last (16 x 8 + 1 = 129).
+//
+// Porquet 2005, section on self-shadowing; renderer/directional/hemisphere.py has the twin and the layout.
+//   elevations <-> rows, azimuths <-> directions of a row, step = (pi/2) / (elevations + 1/2) [rad]
+// No claim: a direction below the horizon counts as level.
+
+const float HALF_PI = 1.57079632679;
+const float TURN = 6.28318530718;
+
+// Row coordinate [steps from the horizon] and azimuth coordinate [parts of a row] of a unit direction.
+vec2 hemisphere_place(vec3 direction, int azimuths, int elevations) {
+    float height = asin(clamp(direction.z, 0.0, 1.0)) * (float(elevations) + 0.5) / HALF_PI;
+    float turn = dot(direction.xy, direction.xy) > 0.0 ? atan(direction.y, direction.x) / TURN : 0.0;
+    return vec2(height, fract(turn) * float(azimuths));
+}
+
+// Number of the direction at a row and an azimuth, which wraps; any row beyond the last is the zenith.
+int hemisphere_index(int row, int azimuth, int azimuths, int elevations) {
+    int wrapped = azimuth - azimuths * int(floor(float(azimuth) / float(azimuths)));
+    return row >= elevations ? azimuths * elevations : max(row, 0) * azimuths + wrapped;
+}
+
+// Number of the cell that a unit direction lies in.
+int hemisphere_nearest(vec3 direction, int azimuths, int elevations) {
+    vec2 place = hemisphere_place(direction, azimuths, elevations);
+    return hemisphere_index(int(place.x), int(place.y + 0.5), azimuths, elevations);
+}
