@@ -16,7 +16,7 @@ from renderer.core.channel import Progress
 from renderer.core.errors import InputError, UmbrageError
 from renderer.core.params import merge, set_path, validate
 from renderer.core.registry import phenomena, phenomenon
-from renderer.core.technique import Arrays, Bake, BakedArrays
+from renderer.core.technique import Arrays, Bake, BakedArrays, Outline
 from renderer.core.work import Workers
 from renderer.describing import described, listed
 from renderer.gl.thread import GLThread
@@ -132,12 +132,7 @@ class Session:
         return following(task, lambda arrays: self._keep(bakes, arrays))
 
     def render(self, state: SceneState, width: int, height: int, on_progress: Report | None = None) -> Picture:
-        """Bake what is missing and draw the picture that `state.quality` asks for; blocks.
-
-        Args:
-            state: a checked state.
-            width, height: in pixels.
-            on_progress: told of bakes.
+        """Bake what is missing, telling of it, and draw the picture that `state.quality` asks for; blocks.
 
         Raises:
             LimitError: larger than this machine can draw.
@@ -170,6 +165,12 @@ class Session:
         if not self.prepared(state):
             self.prepare(state).future.result()
         return exposure_of(state, self._arrays(state))
+
+    def outline(self, state: SceneState) -> Outline:
+        """What a state's scene is built of, as lines: see `renderer.outlining`; blocks while it is baked."""
+        from renderer import outlining
+
+        return outlining.outline_of(self, state, self._arrays)
 
     def compute(self, bake: Bake, on_progress: Report | None = None) -> Arrays:
         """The arrays of one bake that may take minutes, from the cache or from a worker process; blocks.
@@ -206,7 +207,6 @@ class Session:
         Args:
             period: a document of `renderer.world.sun_course.SunlightPeriod`: days, place, receiver.
             state: the land that it draws; without one, `files`: `terrain`, and heights of the `canopy` over it.
-            on_progress: told how far the work is; may raise `Cancelled`.
 
         Raises:
             InvalidDocument, InputError, LimitError: naming the argument.

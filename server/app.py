@@ -18,7 +18,7 @@ from server.facade import RenderSession
 from server.guard import Guard
 from server.hub import Hub
 from server.rendering import warm_up
-from server.routes import assets, docs, health, jobs, measure, render, scenes, study
+from server.routes import assets, docs, health, jobs, measure, outline, render, scenes, study
 from server.settings import ROOT, Settings
 
 WEB = ROOT / "web"
@@ -65,7 +65,7 @@ def create_app(session: RenderSession, settings: Settings, warm: bool = False) -
     )
     problems.install(app)
     app.add_middleware(Guard, settings=settings)
-    for resource in (health, scenes, render, assets, jobs, measure, study, docs):
+    for resource in (health, scenes, render, outline, assets, jobs, measure, study, docs):
         app.include_router(resource.router)
 
     @app.websocket("/api/session")

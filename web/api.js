@@ -42,6 +42,9 @@ export const measureSun = async (moment) => (await request("api/measure/sun", as
 /** Seconds of precomputation that a state with other values would take. */
 export const cost = async (state, sets) => (await request("api/cost", asJson({ state, sets }))).json();
 
+/** What a scene is built of, as lines over its picture. */
+export const outline = async (state) => (await request("api/outline", asJson({ state }))).json();
+
 /** A finished picture as a blob of `type`. */
 export async function render(state, width, height, type = "image/png") {
   const options = asJson({ scene: state.scene, state, width, height });

@@ -66,12 +66,14 @@ const sunStudy = part(() => import("./sunstudy.js"), ({ SunStudy }) => new SunSt
 const probe = part(() => import("./probe.js"), ({ Probe }) => new Probe(find("#probe"), link, store, () => sunBar));
 const compare = part(() => import("./compare.js"), ({ Compare }) => (window.umbrage.compare = new Compare(find("#compare"), screen, store, link, notices)));
 const runner = part(() => import("./running.js"), ({ Runner }) => new Runner(find("#timeline .time-row"), store, link));
+const editor = part(() => import("./shelleditor.js"), ({ ShellEditor }) => (window.umbrage.editor = new ShellEditor(find("#editor"), { screen, store, link, stats, pointer, notices, context: () => panels.context() })));
 const studies = part(() => import("./studies.js"), ({ Studies }) => new Studies(store, open));
 
 const tools = {
   undo: iconButton("undo", "Undo", () => store.undo()),
   redo: iconButton("redo", "Redo", () => store.redo()),
   compare: iconButton("compare", "Compare", () => compare(() => unfold("compare")), { "aria-expanded": "false", "aria-controls": "compare" }),
+  editor: iconButton("brush", "Edit the shell", () => editor(() => unfold("editor")), { "aria-expanded": "false", "aria-controls": "editor", hidden: true }),
   sunlight: iconButton("sun", "Study the sun over days", () => sunStudy((made) => made.fill(show("Sun study")))),
   study: iconButton("chart", "Failures, charts and tables", () => studies((made) => made.fill(show("How right it is, and where it fails")))),
   open: iconButton("open", "Open a file", () => drop.choose()),
@@ -83,13 +85,14 @@ const tools = {
   panel: iconButton("panel", "Techniques and parameters", () => unfold("panel"), { "aria-expanded": "true", "aria-controls": "panel" }),
 };
 
-/** Open or close a side panel; on a phone the two sheets take turns. */
+/** Open or close a side panel; those on the left take turns, and on a phone all sheets do. */
 function unfold(name, open = find(`#${name}`).hidden) {
   find(`#${name}`).hidden = !open;
   tools[name].setAttribute("aria-expanded", String(open));
   document.body.classList.toggle("with-panel", !find("#panel").hidden);
-  const other = name === "panel" ? "compare" : "panel";
-  if (open && matchMedia(NARROW).matches) unfold(other, false);
+  const others = ["compare", "editor", "panel"].filter((other) => other !== name && (matchMedia(NARROW).matches || ![name, other].includes("panel")));
+  if (open) for (const other of others) if (!find(`#${other}`).hidden) unfold(other, false);
+  window.umbrage.editor?.shown();
 }
 
 /** A case of the failure catalogue: what fails as the picture, what survives beside it. */
@@ -157,7 +160,8 @@ function refused(error) {
     notices.toast("The link's state was refused, so the scene starts at its defaults.", "refusal");
   }
   const { field, ...rest } = error;
-  if (!field || !panels.fail(field, api.sentence({ ...rest, field: "" }))) notices.refuse(error);
+  const sentence = api.sentence({ ...rest, field: "" });
+  if (!field || !(window.umbrage.editor?.fail(field, sentence) || panels.fail(field, sentence))) notices.refuse(error);
 }
 
 /** A link to another state was pasted into this page's address. */
@@ -202,9 +206,9 @@ addEventListener("keydown", (event) => {
 
 function assemble() {
   const rule = () => el("hr", { "aria-hidden": "true" });
-  find("#tools").append(tools.undo, tools.redo, rule(), tools.compare, tools.study, tools.sunlight, tools.open, rule(), tools.share, tools.export, tools.code, rule(), tools.theme, tools.help, tools.panel);
+  find("#tools").append(tools.undo, tools.redo, rule(), tools.compare, tools.editor, tools.study, tools.sunlight, tools.open, rule(), tools.share, tools.export, tools.code, rule(), tools.theme, tools.help, tools.panel);
   const closing = (name) => iconButton("close", "Close", () => { unfold(name, false); tools[name].focus(); });
-  for (const name of ["panel", "compare"]) find(`#${name} .panel-head`).append(closing(name));
+  for (const name of ["panel", "compare", "editor"]) find(`#${name} .panel-head`).append(closing(name));
   dialog.querySelector(".panel-head").append(iconButton("close", "Close", close));
   dialog.addEventListener("click", (event) => event.target === dialog && close());
   find("#time-zones").append(...(Intl.supportedValuesOf?.("timeZone") ?? []).map((value) => el("option", { value })));
@@ -225,6 +229,7 @@ async function start() {
     panels.drawn = true;
     panels.learn();
   }, { once: true });
+  store.addEventListener("scene", () => { tools.editor.hidden = !store.schema.at("extrusion", store.document); });
   pointer.addEventListener("pick", ({ detail }) => probe((made) => made.ask(detail)));
   screen.addEventListener("size", () => link.send({ type: "resize", width: screen.width, height: screen.height }));
   link.addEventListener("open", (event) => opened(event).catch((error) => notices.toast(error.message, "refusal")));

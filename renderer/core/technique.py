@@ -79,6 +79,19 @@ class BakedArrays:
     arrays: Arrays
 
 
+@dataclass(frozen=True)
+class Outline:
+    """What a scene is built of, as lines to lay over its picture.
+
+    Attributes:
+        arrays: vertices, lines and triangles, by name. facts: counts and sizes, by name. words: what must be told.
+    """
+
+    arrays: Arrays
+    facts: Mapping[str, int | float]
+    words: tuple[str, ...] = ()
+
+
 class SceneRenderer(Protocol):
     """Draws one phenomenon for every view; lives on the GL thread."""
 
@@ -129,6 +142,7 @@ class Phenomenon:
         metered_light: `(state, arrays of the bakes by name) -> W m-2`: how much light there is, for the exposure.
         probe: `(state, arrays of the bakes by name, x, y, (width, height)) -> facts` about a point of the picture, as
             JSON values.
+        outline: `(state, arrays of the bakes by name) -> Outline`, where the scene is built of something to be shown.
     """
 
     name: str
@@ -146,6 +160,7 @@ class Phenomenon:
     combinations: Mapping[str, Preset] = field(default_factory=dict)
     place: int = 0
     world_bakes: Callable[[Any], list[Bake]] | None = None
+    outline: Callable[[Any, Mapping[str, Arrays]], Outline] | None = None
 
 
 @dataclass(frozen=True)

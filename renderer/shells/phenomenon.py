@@ -6,6 +6,7 @@ from collections.abc import Mapping
 
 from renderer.core.technique import Arrays, Phenomenon, Slot
 from renderer.shells.bakes import bakes
+from renderer.shells.outline import outline
 from renderer.shells.presets import PRESETS
 from renderer.shells.probe import probe
 from renderer.shells.renderer import ShellsRenderer
@@ -82,4 +83,5 @@ PHENOMENON = Phenomenon(
     metered_light=_metered_light,
     probe=probe,
     place=2,
+    outline=outline,
 )

@@ -105,6 +105,13 @@ def failure(page: Page) -> None:
     house.settled(page)
 
 
+def shell(page: Page) -> None:
+    """The shell editor, with conflicts over the picture."""
+    button(page, "Edit the shell")
+    page.get_by_role("radio", name="Conflicts").check()
+    house.until(page, "umbrage.editor?.outline != null")
+
+
 def bare(page: Page) -> None:
     """Nothing but the picture."""
     page.locator("#surface").focus()
@@ -149,6 +156,7 @@ def main(arguments: list[str] | None = None) -> int:
         shots: list[tuple[str, dict[str, Any], Act | None]] = [
             *((name, preset["document"], None) for name, preset in presets.items()),
             *((name, first, act) for name, act in STATES.items()),
+            *([("editor", presets["teapot_relief"]["document"], shell)] if wanted.scene == "shells" else []),
         ]
         for device, options in DEVICES.items():
             for scheme in SCHEMES:

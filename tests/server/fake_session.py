@@ -96,9 +96,8 @@ class FakeView:
         )
 
     def probe(self, state: FakeState, x: float, y: float) -> Future[dict[str, Any]]:
-        return self.session.pool.submit(
-            lambda: {"elevation": x * 100, "radiance": [float("nan"), 1.0], "y": np.float32(y)}
-        )
+        found = {"elevation": x * 100, "radiance": [float("nan"), 1.0], "y": np.float32(y)}
+        return self.session.pool.submit(lambda: found)
 
     def close(self) -> None:
         self.closed = True
@@ -138,8 +137,7 @@ class FakeSession:
         self.gl = SimpleNamespace(info=SimpleNamespace(renderer="fake", vendor="none", version=(3, 3), software=True))
         self.assets = FakeAssets()
         self.pool = ThreadPoolExecutor(1)
-        self.gate, self.bake_gate, self.drawing = threading.Event(), threading.Event(), threading.Event()
-        self.start_gate = threading.Event()
+        self.gate, self.bake_gate, self.drawing, self.start_gate = (threading.Event() for _ in range(4))
         self.gate.set()
         self.bake_gate.set()
         self.start_gate.set()
@@ -235,22 +233,27 @@ class FakeSession:
         samples = samples_of(state.quality)
         for sample in range(samples):
             if on_progress is not None:
-                on_progress(
-                    SimpleNamespace(name="picture", fraction=sample / samples, words="drawing", seconds_left=None)
-                )
+                said = {"name": "picture", "fraction": sample / samples, "words": "drawing", "seconds_left": None}
+                on_progress(SimpleNamespace(**said))
             if self.draw_seconds:
                 time.sleep(self.draw_seconds * width * height / 4096)
         rgb8 = paint(state, width, height)
         linear = np.concatenate([rgb8 / 255, np.ones((height, width, 1))], -1).astype(np.float32)
         return FakePicture(linear, rgb8, samples, 1.0)
 
+    def outline(self, state: FakeState) -> Any:
+        if state.density == 7:
+            raise InputError("scene", "has no lines to show", "others")
+        ends = np.array([[0, 1], [1, 258]], np.uint32)
+        return SimpleNamespace(arrays={"ends": ends}, facts={"lines": 2}, words=("all is well",))
+
     def compare(self, state: FakeState, width: int, height: int, on_progress: Any = None) -> Any:
         picture = self.render(state, width, height, on_progress)
         return SimpleNamespace(files={"reference.png": picture.encode("png")}, numbers={"relative_rmse": 0.1})
 
     def sunlight(self, period: Any, state: Any = None, files: Any = None, on_progress: Any = None) -> Any:
-        if set(period) - {"start"}:
-            raise InputError(next(iter(set(period) - {"start"})), "is no argument", "start")
+        for name in set(period) - {"start"}:
+            raise InputError(name, "is no argument", "start")
         while not self.bake_gate.wait(0.01):
             on_progress(SimpleNamespace(name="sun study", fraction=0.5, words="following the sun", seconds_left=1.0))
         hours = np.full((2, 3), files["terrain"].stat().st_size if files else 12.0, np.float32)
@@ -280,8 +283,8 @@ class FakeSession:
         ]
 
     def measure(self, quantity: str, arguments: Mapping[str, Any], files: Mapping[str, Path] | None = None) -> Any:
-        if set(arguments) - {"factor"}:
-            raise InputError(next(iter(set(arguments) - {"factor"})), "is no argument", "factor")
+        for name in set(arguments) - {"factor"}:
+            raise InputError(name, "is no argument", "factor")
         factor = arguments.get("factor", 1.0)
         if not isinstance(factor, (int, float)) or not np.isfinite(factor):
             raise InputError("factor", "must be a finite number")

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import base64
 import io
 import threading
 import time
@@ -216,6 +217,18 @@ def test_a_wrong_measurement_names_its_field(
 ) -> None:
     answer = client.post(f"/api/measure/{quantity}", json=body)
     assert (answer.status_code, errors(answer)[0]["field"]) == (status, field)
+
+
+def test_lines_come_as_bytes_with_their_shape_and_a_scene_without_any_is_refused_in_words(client: TestClient) -> None:
+    answer = client.post("/api/outline", json={"scene": "fake"}).json()
+    coded = answer["arrays"]["ends"]
+    ends = np.frombuffer(base64.b64decode(coded["base64"]), f"<{np.dtype(coded['dtype']).str[1:]}")
+    assert ends.reshape(coded["shape"]).tolist() == [[0, 1], [1, 258]]
+    assert answer["facts"] == {"lines": 2}
+    assert answer["words"] == ["all is well"]
+    refused = client.post("/api/outline", json={"scene": "fake", "sets": {"density": 7}})
+    assert refused.status_code == 422
+    assert errors(refused)[0]["field"] == "scene"
 
 
 def test_the_schema_holds_messages_and_states(client: TestClient) -> None:
