@@ -14,7 +14,10 @@ if TYPE_CHECKING:
     from renderer.session import Session
 
 
-def outline_of(session: Session, state: SceneState, arrays: Callable[[SceneState], Mapping[str, BakedArrays]]) -> Outline:
+Baked = Callable[[SceneState], Mapping[str, BakedArrays]]
+
+
+def outline_of(session: Session, state: SceneState, arrays: Baked) -> Outline:
     """Vertices and lines of a state's scene; blocks while what it needs is baked.
 
     Args:
