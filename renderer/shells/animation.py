@@ -10,11 +10,12 @@ from pydantic import Field
 
 from renderer.core.params import Model, param
 from renderer.core.technique import Arrays
-from renderer.shells.base_mesh import BaseMesh, vertex_normals
+from renderer.shells.base_mesh import BaseMesh
 from renderer.shells.extrusion import Extrusion, directions
 from renderer.shells.shell import Shell, update_shell
 from renderer.shells.shell_bake import shell_of
 from renderer.shells.surfaces import surface_of
+from renderer.world.mesh_normals import vertex_normals
 
 MOVING = ("positions", "planes", "to_texture", "volumes")
 """Arrays of a shell that change as it moves; the others hold its topology."""

@@ -12,9 +12,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from renderer.core.errors import LimitError
-from renderer.shells.base_mesh import face_vectors
 from renderer.shells.clamp_kernels import close_prisms, overlapping
 from renderer.shells.shell import CORNERS, FLAT, SIGNS, sorted_faces
+from renderer.world.mesh_normals import face_vectors
 
 STEP = 0.85
 """Factor by which the offsets of a conflict are shortened at a time: what remains is at most that much too short."""

@@ -13,9 +13,10 @@ from scipy import ndimage
 from renderer.core.cache import AssetStore
 from renderer.core.errors import InputError
 from renderer.core.params import Model, Vector3, param
-from renderer.shells.base_mesh import BaseMesh, vertex_normals
+from renderer.shells.base_mesh import BaseMesh
 from renderer.shells.clamp import Clamped, Conflicts, Prisms, facing_directions
 from renderer.world.maps import load_map
+from renderer.world.mesh_normals import vertex_normals
 
 ASSET = r"^asset:[0-9a-f]{64}$"
 

@@ -15,7 +15,7 @@ import numpy as np
 from renderer.core.technique import Arrays, BakedArrays
 from renderer.gl.context import GL
 from renderer.gl.targets import Target
-from renderer.shells.base_mesh import BaseMesh, from_corners, vertex_normals
+from renderer.shells.base_mesh import BaseMesh, from_corners
 from renderer.shells.order_errors import order_error
 from renderer.shells.renderer import ShellsRenderer
 from renderer.shells.resident import placed
@@ -25,6 +25,7 @@ from renderer.shells.surface_grids import grid_corners, grid_uv
 from renderer.shells.surfaces import Sphere
 from renderer.shells.visibility import visibility_order
 from renderer.world.camera import Orbit
+from renderer.world.mesh_normals import vertex_normals
 
 if TYPE_CHECKING:
     from renderer.shells.state import ShellsState

@@ -10,8 +10,8 @@ import numpy as np
 from renderer.core.technique import Arrays
 from renderer.gl.context import GL
 from renderer.gl.meshes import Triangles
-from renderer.shells.base_mesh import vertex_normals
 from renderer.shells.world_scale import BASE, TET_ROW, TET_TEXELS
+from renderer.world.mesh_normals import vertex_normals
 
 
 @dataclass(frozen=True)

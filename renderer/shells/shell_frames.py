@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from renderer.shells.base_mesh import BaseMesh, face_vectors, flat_uv, vertex_normals
+from renderer.shells.base_mesh import BaseMesh, flat_uv
+from renderer.world.mesh_normals import face_vectors, vertex_normals
 
 
 @dataclass(frozen=True)

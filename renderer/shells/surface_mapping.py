@@ -8,8 +8,9 @@ import numpy as np
 
 from renderer.core.cache import AssetStore
 from renderer.core.errors import InputError, LimitError
-from renderer.shells.base_mesh import BaseMesh, face_vectors, from_corners
+from renderer.shells.base_mesh import BaseMesh, from_corners
 from renderer.world.mesh import Mesh, MeshReading, load_mesh
+from renderer.world.mesh_normals import face_vectors
 
 Mapping = Literal["file", "box", "cylinder", "sphere", "plane"]
 

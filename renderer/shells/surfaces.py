@@ -12,11 +12,12 @@ from pydantic import Field, TypeAdapter
 from renderer.core.params import Model, param
 from renderer.core.technique import Arrays
 from renderer.shells import surface_grids
-from renderer.shells.base_mesh import BaseMesh, vertex_normals
+from renderer.shells.base_mesh import BaseMesh
 from renderer.shells.surface_mapping import Mapping, load_surface
 from renderer.shells.surface_teapot import teapot
 from renderer.shells.surface_turned import MUSHROOM, VASE, turned_curve
 from renderer.world.mesh import MeshReading
+from renderer.world.mesh_normals import vertex_normals
 
 ASSET = r"^asset:[0-9a-f]{64}$"
 

@@ -10,11 +10,12 @@ import pytest
 
 from renderer.core.params import bake_arguments
 from renderer.shells.animation import Bend, Bump, MovingShell, NoiseMotion, Still, Twist, bent, deformed, twisted
-from renderer.shells.base_mesh import BaseMesh, vertex_normals
+from renderer.shells.base_mesh import BaseMesh
 from renderer.shells.extrusion import Extrusion
 from renderer.shells.shell import build_shell
 from renderer.shells.shell_bake import bake_shell, shell_of
 from renderer.shells.surfaces import Sphere, Tube, bake_surface, surface_of
+from renderer.world.mesh_normals import vertex_normals
 
 MOTIONS = [NoiseMotion(), Bend(), Twist(), Bump()]
 

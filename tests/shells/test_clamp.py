@@ -8,11 +8,12 @@ from scipy.optimize import linprog
 
 from renderer.core.errors import LimitError
 from renderer.shells import clamp
-from renderer.shells.base_mesh import BaseMesh, side_by_side, vertex_normals
+from renderer.shells.base_mesh import BaseMesh, side_by_side
 from renderer.shells.clamp import LEAST, SLOPE, Prisms, facing_directions
 from renderer.shells.clamp_kernels import close_prisms, overlapping
 from renderer.shells.shell import build_shell
 from renderer.shells.surfaces import Mushroom, Plane, Teapot
+from renderer.world.mesh_normals import vertex_normals
 from tests.shells.meshes import ALL, SOUND, corner, field, lumps, of_faces, torus
 
 

@@ -12,7 +12,7 @@ from renderer.core.cache import AssetStore
 from renderer.core.errors import AssetError
 from renderer.core.params import bake_arguments
 from renderer.core.technique import Bake
-from renderer.shells.base_mesh import BaseMesh, from_corners, vertex_normals
+from renderer.shells.base_mesh import BaseMesh, from_corners
 from renderer.shells.extrusion import (
     Dab,
     EvenThickness,
@@ -34,6 +34,7 @@ from renderer.shells.shell_bake import (
     shell_words,
 )
 from renderer.shells.surfaces import Mushroom, Plane, Sphere, bake_surface
+from renderer.world.mesh_normals import vertex_normals
 from tests.shells.meshes import hourglass, smeared
 
 

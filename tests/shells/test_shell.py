@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from renderer.shells.base_mesh import BaseMesh, vertex_normals
+from renderer.shells.base_mesh import BaseMesh
 from renderer.shells.shell import BASE, RIM, TOP, Shell, build_shell, update_shell
+from renderer.world.mesh_normals import vertex_normals
 from tests.shells.meshes import ALL, SOUND, smeared
 
 THICKNESS = 0.08

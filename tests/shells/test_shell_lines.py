@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from renderer.shells.base_mesh import vertex_normals
 from renderer.shells.shell import build_shell
 from renderer.shells.shell_lines import BASE_EDGE, DIAGONAL, TOP_EDGE, UPRIGHT, shell_lines
+from renderer.world.mesh_normals import vertex_normals
 from tests.shells.meshes import torus
 
 

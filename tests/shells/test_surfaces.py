@@ -13,7 +13,7 @@ from renderer.core.cache import AssetStore
 from renderer.core.errors import AssetError, LimitError
 from renderer.core.params import bake_arguments
 from renderer.shells import surface_mapping
-from renderer.shells.base_mesh import BaseMesh, face_vectors, flat_uv, from_corners, vertex_normals
+from renderer.shells.base_mesh import BaseMesh, flat_uv, from_corners
 from renderer.shells.shell import build_shell
 from renderer.shells.surface_mapping import mapped
 from renderer.shells.surface_teapot import BODY, HANDLE, LID, SPOUT
@@ -30,6 +30,7 @@ from renderer.shells.surfaces import (
     surface_of,
 )
 from renderer.world.mesh import is_watertight
+from renderer.world.mesh_normals import face_vectors, vertex_normals
 
 
 def baked(surface: Any) -> BaseMesh:

@@ -7,7 +7,6 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from renderer.shells.base_mesh import vertex_normals
 from renderer.shells.order_bench import arrays_of
 from renderer.shells.probe import crossings
 from renderer.shells.resident import placed
@@ -16,6 +15,7 @@ from renderer.shells.surfaces import Planks
 from renderer.shells.visibility import Order, visibility_order
 from renderer.shells.visibility_kernels import sorted_cells
 from renderer.world.camera import Look, Orbit, Orthographic, rays
+from renderer.world.mesh_normals import vertex_normals
 from tests.shells.conftest import even, sigma
 from tests.shells.meshes import SOUND
 from tests.shells.order.test_walk import GLOBE

@@ -11,12 +11,12 @@ from renderer.core.baking import bake_now
 from renderer.core.cache import Cache
 from renderer.core.params import validate
 from renderer.shells.bakes import sky_bake
-from renderer.shells.base_mesh import vertex_normals
 from renderer.shells.probe import crossings
 from renderer.shells.shell import build_shell
 from renderer.shells.state import ShellsState
 from renderer.shells.surfaces import Sphere
 from renderer.world.camera import Orbit, rays
+from renderer.world.mesh_normals import vertex_normals
 from renderer.world.sky import sky_for
 from renderer.world.sun import SunDirection, direction
 from tests.shells.conftest import even, sigma

@@ -1,0 +1,99 @@
+"""The mesh of a subject, as its maker gives it and as points and rays take it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from renderer.world.mesh_normals import corner_normals, face_vectors
+
+FLATTEST = 4.0
+"""Times its height that a triangle's longest side may be: points on a thinner one would stand in rows."""
+
+FINEST = 256
+"""Into how many parts of the box's diagonal no side is cut."""
+
+ROUNDS = 16
+"""Of cutting longest sides in halves; each needs a side twice as long as the last."""
+
+
+@dataclass(frozen=True)
+class Solid:
+    """Triangles with colour and shading normals.
+
+    Attributes:
+        vertices: (V, 3) float64 [m], z up. faces: (F, 3), counter-clockwise seen from the front.
+        colour: (F, 3) linear reflectance.
+        normals: (F, 3, 3) unit shading normals of the corners; None takes smooth ones.
+        two_sided: whether the back of a face is seen too.
+        source: (F,) point of the user's cloud that a face stands for; None for true meshes.
+        notes: what was assumed, in words.
+    """
+
+    vertices: np.ndarray
+    faces: np.ndarray
+    colour: np.ndarray
+    normals: np.ndarray | None = None
+    two_sided: bool = False
+    source: np.ndarray | None = None
+    notes: tuple[str, ...] = field(default_factory=tuple)
+
+    def stood(self, size: float) -> Solid:
+        """Scaled so that the longest side of its box is `size` [m], its foot's middle at the origin; 0 leaves it."""
+        if size == 0:
+            return self
+        used = self.vertices[np.unique(self.faces)]
+        low, high = used.min(axis=0), used.max(axis=0)
+        foot = np.array([*((low + high) / 2)[:2], low[2]])
+        return replace(self, vertices=(self.vertices - foot) * (size / (high - low).max()))
+
+    def shaded(self) -> np.ndarray:
+        """(F, 3, 3) its shading normals."""
+        return corner_normals(self.vertices, self.faces) if self.normals is None else self.normals
+
+
+def compact(solid: Solid) -> Solid:
+    """The same surface without faces of no area, its long thin triangles cut across."""
+    vectors = face_vectors(solid.vertices, solid.faces)
+    whole = np.linalg.norm(vectors, axis=1) > 0
+    vertices, faces, normals = solid.vertices, solid.faces[whole], solid.shaded()[whole]
+    source = np.flatnonzero(whole)
+    used = vertices[faces.ravel()]
+    finest = float(np.linalg.norm(np.ptp(used, axis=0))) / FINEST
+    for _ in range(ROUNDS):
+        corners = vertices[faces]
+        sides = np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2)
+        longest = sides.argmax(axis=1)
+        length = sides.max(axis=1)
+        height = np.linalg.norm(face_vectors(vertices, faces), axis=1) / length
+        thin = np.flatnonzero((length > FLATTEST * height) & (length > finest))
+        if not len(thin):
+            break
+        vertices, faces, normals, source = _halved(vertices, faces, normals, source, thin, longest[thin])
+    return replace(solid, vertices=vertices, faces=faces.astype(np.int32), normals=normals,
+                   colour=solid.colour[source], source=None if solid.source is None else solid.source[source])
+
+
+def _halved(
+    vertices: np.ndarray, faces: np.ndarray, normals: np.ndarray, source: np.ndarray, thin: np.ndarray, side: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Faces `thin` cut from the middle of the side that begins at corner `side`: vertices, faces, normals, source."""
+    rows = np.arange(len(thin))
+    turn = (side[:, None] + np.arange(3)) % 3
+    a, b, c = faces[thin][rows[:, None], turn].T
+    na, nb, nc = np.moveaxis(normals[thin][rows[:, None], turn], 1, 0)
+    nm = na + nb
+    length = np.linalg.norm(nm, axis=1, keepdims=True)
+    nm = np.where(length > 1e-9, nm / np.maximum(length, 1e-9), na)
+    # The middle of a side comes out the same from both of its faces, to the last bit: a + b does not depend on order.
+    m = len(vertices) + rows
+    vertices = np.concatenate([vertices, (vertices[a] + vertices[b]) / 2])
+    faces, normals = faces.copy(), normals.copy()
+    faces[thin], normals[thin] = np.stack([a, m, c], axis=1), np.stack([na, nm, nc], axis=1)
+    return (
+        vertices,
+        np.concatenate([faces, np.stack([m, b, c], axis=1)]),
+        np.concatenate([normals, np.stack([nm, nb, nc], axis=1)]),
+        np.concatenate([source, source[thin]]),
+    )
