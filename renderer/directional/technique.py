@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, ClassVar
+from collections.abc import Hashable, Mapping
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
+from renderer.core.params import param
 from renderer.core.technique import Arrays, Bake, Technique
 
 if TYPE_CHECKING:
@@ -29,7 +30,28 @@ class DirectionalTechnique(Technique):
         """Values of `extra_declarations`."""
         return {}
 
+    def textures_key(self, baked_keys: Mapping[str, str]) -> Hashable:
+        """What `textures_of` depends on, beside the kind: names of files, keys of bakes; no live parameter."""
+        return None
+
     def textures_of(self, gl: GL, baked: Mapping[str, Arrays]) -> dict[str, AnyTexture]:
-        """Its samplers' textures by the names of `textures`; called on the GL thread when what was baked is new, and
+        """Its samplers' textures by the names of `textures`; called on the GL thread when `textures_key` is new, and
         freed by the renderer."""
         return {}
+
+
+class TexelSelection(DirectionalTechnique):
+    """Which points the texels of the faces show."""
+
+    count: ClassVar[int] = 1
+    """Points that a texel takes, 1 or 4."""
+    per_pixel: ClassVar[bool] = False
+    """Whether pixels choose their points, and not texels."""
+
+    magnification: Literal["nearest", "linear"] = param(
+        "linear", label="Between texels", help="How a face's picture is read between its texels.", cost="host"
+    )
+
+
+SHADOW_CODE = "shadow_code"
+"""Name of the bake of a self-shadow technique whose `words`, (M, W) uint32, `shadow_words` reads in the shader."""

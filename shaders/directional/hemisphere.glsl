@@ -25,3 +25,26 @@ int hemisphere_nearest(vec3 direction, int azimuths, int elevations) {
     vec2 place = hemisphere_place(direction, azimuths, elevations);
     return hemisphere_index(int(place.x), int(place.y + 0.5), azimuths, elevations);
 }
+
+// The four directions round a unit direction, and their bilinear weights, 1 together. Below the lowest row it counts as
+// being on it.
+void hemisphere_around(vec3 direction, int azimuths, int elevations, out ivec4 around, out vec4 weights) {
+    vec2 place = hemisphere_place(direction, azimuths, elevations);
+    float row = clamp(place.x - 0.5, 0.0, float(elevations));
+    int low = min(int(row), elevations - 1);
+    int left = int(place.y);
+    vec2 along = vec2(row - float(low), place.y - float(left));
+    around = ivec4(hemisphere_index(low, left, azimuths, elevations),
+                   hemisphere_index(low, left + 1, azimuths, elevations),
+                   hemisphere_index(low + 1, left, azimuths, elevations),
+                   hemisphere_index(low + 1, left + 1, azimuths, elevations));
+    weights = vec4((1.0 - along.x) * vec2(1.0 - along.y, along.y), along.x * vec2(1.0 - along.y, along.y));
+}
+
+// Unit direction of a number.
+vec3 hemisphere_direction(int index, int azimuths, int elevations) {
+    bool zenith = index == azimuths * elevations;
+    float elevation = (float(index / azimuths) + 0.5) * HALF_PI / (float(elevations) + 0.5);
+    float turn = float(index % azimuths) * TURN / float(azimuths);
+    return zenith ? vec3(0.0, 0.0, 1.0) : vec3(cos(elevation) * vec2(cos(turn), sin(turn)), sin(elevation));
+}
