@@ -20,6 +20,7 @@ from renderer import reference
 from renderer.core.params import validate
 from renderer.core.registry import phenomenon
 from renderer.core.technique import Arrays, Bake
+from renderer.truth_scenes import OPTIONS, RENDER
 from renderer.world.camera import rays
 from renderer.world.sampling import offsets
 from renderer.world.state import SceneState
@@ -27,7 +28,12 @@ from renderer.world.state import SceneState
 POSITIONS = 16
 """Sub-pixel positions of a reference, and of the converged picture that is compared with it."""
 
-SECONDS: Mapping[str, tuple[float, float]] = {"forest": (0.0, 160e-6), "clouds": (60.0, 0.0), "shells": (5.0, 90e-6)}
+SECONDS: Mapping[str, tuple[float, float]] = {
+    "forest": (0.0, 160e-6),
+    "clouds": (60.0, 0.0),
+    "shells": (5.0, 90e-6),
+    "directional": (2.0, 12e-6),
+}
 """What a picture takes on two cores, and each of its rays, to announce the cost: clouds have the same number of paths
 in every picture."""
 
@@ -35,8 +41,13 @@ NOT_THE_WORLD: Mapping[str, tuple[str, ...]] = {
     "forest": ("version", "quality", "view", "time"),
     "clouds": ("version", "quality", "view"),
     "shells": ("version", "quality", "view"),
+    "directional": ("version", "quality", "view", "time", "cloud", "visibility"),
 }
 """Fields of a state, beside its slots, that change no reference: time is the world's where clouds drift."""
+
+THE_WORLD: Mapping[str, frozenset[str]] = {"directional": frozenset({"light"})}
+"""Slots whose technique is a part of the world: lights and materials that a reference takes as they are."""
+
 
 Judge = Literal["combination", "share", "shadow", "matter"]
 """What a picture is judged for: `combination` against the full physical reference, `share` against the
@@ -79,7 +90,7 @@ def truth_bake(
         cast: kinds of shadow that fall, by the reference's own names; all that the judge has where none are given.
     """
     found = phenomenon(state.scene)
-    slots = {slot.name for slot in found.slots}
+    slots = {slot.name for slot in found.slots} - THE_WORLD.get(state.scene, frozenset())
     document = state.model_dump(mode="json", exclude={*NOT_THE_WORLD[state.scene], *slots})
     options = OPTIONS[state.scene](state, judge, cast)
     needed = [bake for bake in found.bakes(state) if bake.name in found.world_needs]
@@ -157,117 +168,3 @@ def truth_of(arrays: Arrays) -> Truth:
     return Truth(
         arrays["linear"], arrays["once"], arrays["backdrop"], float(arrays["standard_error"]), float(arrays["seconds"])
     )
-
-
-FOREST_SHADOWS = ("terrain", "forest_on_ground", "tree_on_tree", "within_tree")
-"""Kinds of shadow that the forest's reference can leave out."""
-
-
-def _forest_options(state: Any, judge: Judge, cast: Sequence[str] | None) -> dict[str, Any]:
-    """A shadow is judged under the picture's own light where the reference has it; everything else by the leaves."""
-    own = judge == "shadow" and state.light.kind in ("lambert", "gouraud")
-    # what is judged for its shadow or its matter has the sky's light of its own, where the reference has that
-    shared = judge == "share" or (judge != "combination" and state.sky.kind == "ambient")
-    sky = {} if shared else {"sky": "hemisphere"}
-    falling = FOREST_SHADOWS if cast is None and judge != "matter" else tuple(cast or ())
-    left_out = {kind: False for kind in FOREST_SHADOWS if kind not in falling}
-    return {"light": state.light.kind if own else "leaf", **sky, **left_out}
-
-
-def _in_two(part: Callable[[np.ndarray, int, Progress], Any], positions: np.ndarray, progress: Progress) -> Arrays:
-    """A reference picture in two parts: the pixels' centres first, whose picture alone is what one sample a pixel
-    shows.
-
-    Args:
-        part: renders some of the positions by a seed that differs by a number; or that number's jitter would repeat.
-    """
-    share = 1 / len(positions)
-    first = part(positions[:1], 0, lambda done, words: progress(done * share, words))
-    linear, error, seconds = first.radiance, first.standard_error, first.seconds
-    regions = getattr(first, "regions", None)
-    if len(positions) > 1:
-        rest = part(positions[1:], 1, lambda done, words: progress(share + done * (1 - share), words))
-        linear = share * first.radiance + (1 - share) * rest.radiance
-        error = np.hypot(share * first.standard_error, (1 - share) * rest.standard_error)
-        seconds = first.seconds + rest.seconds
-        regions = None if regions is None else share * regions + (1 - share) * rest.regions
-    mean = float(linear[..., :3].mean())
-    made = {
-        "linear": linear,
-        "once": first.radiance,
-        "standard_error": np.array(float(np.sqrt(np.mean(error**2))) / mean if mean > 0 else 0.0),
-        "seconds": np.array(seconds),
-    }
-    return made if regions is None else {**made, "regions": regions.astype(np.float32)}
-
-
-def _forest(
-    world: Mapping[str, Any], looking: Any, positions: np.ndarray, options: Mapping[str, Any], progress: Progress
-) -> Arrays:
-    """March the forest."""
-    from renderer.reference.forest import Options, render
-    from renderer.reference.forest_world import ForestWorld
-
-    forest = ForestWorld(**world)
-    return _in_two(
-        lambda places, seed, tell: render(forest, looking, places, Options(**options, seed=1 + seed), tell),
-        positions,
-        progress,
-    )
-
-
-def _clouds_options(state: Any, judge: Judge, cast: Sequence[str] | None) -> dict[str, Any]:
-    """Clouds have one truth, whatever is judged."""
-    return {}
-
-
-def _clouds(
-    world: Mapping[str, Any], looking: Any, positions: np.ndarray, options: Mapping[str, Any], progress: Progress
-) -> Arrays:
-    """Trace the clouds."""
-    from renderer.reference.clouds import Options, render
-    from renderer.reference.clouds_world import CloudsWorld
-
-    clouds = CloudsWorld(**world)
-    return _in_two(
-        lambda places, seed, tell: render(clouds, looking, places, Options(**options, seed=1 + seed), tell),
-        positions,
-        progress,
-    )
-
-
-def _shells_options(state: Any, judge: Judge, cast: Sequence[str] | None) -> dict[str, Any]:
-    """The light is a part of the shells' world: what shines by itself, or scatters on, is judged by what does."""
-    own = state.light.kind in ("unlit", "scattering")
-    return {
-        "light": state.light.kind if own else "lambert",
-        "level": float(getattr(state.light, "level", 1.0)),
-        "asymmetry": float(getattr(state.light, "asymmetry", 0.0)),
-        "shadows": judge != "matter" and cast is None,
-    }
-
-
-def _shells(
-    world: Mapping[str, Any], looking: Any, positions: np.ndarray, options: Mapping[str, Any], progress: Progress
-) -> Arrays:
-    """Follow rays through the shell."""
-    from renderer.reference.shells import Options, render
-    from renderer.reference.shells_world import ShellsWorld, Surface
-
-    base = world["base"]
-    plain = {name: value for name, value in world.items() if name != "base"} | dict(options)
-    shells = ShellsWorld(**plain, surfaces=() if base is None else (Surface(**base),))
-    return _in_two(
-        lambda places, seed, tell: render(shells, looking, places, Options(seed=1 + seed), tell), positions, progress
-    )
-
-
-OPTIONS: dict[str, Callable[[Any, Judge, Sequence[str] | None], dict[str, Any]]] = {
-    "forest": _forest_options,
-    "clouds": _clouds_options,
-    "shells": _shells_options,
-}
-"""Options of each phenomenon's reference."""
-
-RENDER: dict[str, Callable[..., Arrays]] = {"forest": _forest, "clouds": _clouds, "shells": _shells}
-"""How each phenomenon's world becomes a reference picture."""

@@ -16,7 +16,7 @@ from renderer.core.isolation import Contender
 from renderer.kind_study import KindStudy, Plan
 from renderer.session import Session
 from renderer.study.sweep import read
-from renderer.truth import FOREST_SHADOWS
+from renderer.truth_scenes import FOREST_SHADOWS
 from renderer.world.sun import angles
 
 MACHINE = {"renderer": "pretended", "cores": 2, "commit": "abc"}

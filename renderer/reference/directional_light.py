@@ -10,7 +10,7 @@ import numpy as np
 from renderer.reference.directional_brdf import reflected
 from renderer.reference.directional_mesh import Hits, Subject, frames
 from renderer.reference.directional_surroundings import Picture
-from renderer.reference.directional_world import DirectionalWorld, Floats, Measured, Phong, Surroundings
+from renderer.reference.directional_world import DirectionalWorld, Floats, Lamp, Measured, Phong, Surroundings
 
 
 class Shading:
@@ -45,8 +45,8 @@ class Shading:
         for weight, part in world.parts:
             if isinstance(part, Phong):
                 found += weight * phong(part, hits, sun) * sunlit
-                if world.lamp is not None:
-                    found += weight * self._lamp(part, hits)
+                if part.lamp is not None:
+                    found += weight * self._lamp(part, part.lamp, hits)
                 gathered += weight * part.ambient * self._sky(hits)
             elif isinstance(part, Measured):
                 found += weight * _measured(part, hits, sun) * sunlit
@@ -65,9 +65,7 @@ class Shading:
         share = (1 + hits.normal[:, 2:]) / 2
         return np.asarray(hits.colour / math.pi * np.asarray(self.world.e_sky) * share)
 
-    def _lamp(self, part: Phong, hits: Hits) -> Floats:
-        lamp = self.world.lamp
-        assert lamp is not None
+    def _lamp(self, part: Phong, lamp: Lamp, hits: Hits) -> Floats:
         away = np.asarray(lamp.place, np.float64) - hits.place
         distance = np.maximum(np.linalg.norm(away, axis=1), 1e-12)
         towards = away / distance[:, None]
@@ -101,4 +99,4 @@ def _measured(part: Measured, hits: Hits, towards: Floats) -> Floats:
     tangent, bitangent = frames(hits.normal)
     axes = np.stack([tangent, bitangent, hits.normal], axis=1)
     eye, light = (np.einsum("mad,md->ma", axes, each) for each in (hits.to_eye, towards))
-    return reflected(part.brdf, eye, light) * np.maximum(light[:, 2:], 0)
+    return reflected(part, eye, light) * np.maximum(light[:, 2:], 0)

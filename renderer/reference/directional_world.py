@@ -5,8 +5,9 @@ Nothing of clouds of points, faces of a box or hemispheres of directions: those 
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,12 +36,14 @@ class Phong:
 
     Attributes:
         ambient, diffuse, specular: shares. The sky's light comes by `ambient`, from the open part of the upper dome.
+        lamp: a point light beside the sun.
     """
 
     ambient: float
     diffuse: float
     specular: float
     exponent: float
+    lamp: Lamp | None = None
 
 
 @dataclass(frozen=True)
@@ -59,44 +62,26 @@ class Surroundings:
     specular: float
 
 
-@dataclass(frozen=True)
-class Table:
-    """A BRDF between nodes, bilinear by each direction's two angles.
-
-    Attributes:
-        values: (To, Po, Tl, Pl, 3) for every eye and light, 1/sr; isotropic (To, Tl, P, 3), P being the azimuth from
-            the eye's to the light's.
-        theta_o, theta_l: from the normal [rad], rising; beyond the last the last counts.
-        phi_o, phi_l: from the tangent [rad], rising within a turn, which closes; isotropic `phi_l` for P, `phi_o` None.
-    """
-
-    values: NDArray[np.floating]
-    theta_o: NDArray[np.floating]
-    theta_l: NDArray[np.floating]
-    phi_l: NDArray[np.floating]
-    phi_o: NDArray[np.floating] | None = None
-
-
-@dataclass(frozen=True)
-class Merl:
-    """A measured material in the half vector's coordinates (Matusik et al. 2003), as its file holds it.
-
-    Attributes:
-        values: (theta_h, theta_d, phi_d, 3) BRDF, 1/sr, the file's scales applied; below 0 where nothing was measured.
-    """
-
-    values: NDArray[np.floating]
+Coordinates = Literal["angles", "difference", "half"]
 
 
 @dataclass(frozen=True)
 class Measured:
-    """A measured material in the sun.
+    """A material as a table in the sun, linear in each coordinate between its nodes.
 
     Attributes:
-        brdf: what it reflects. ambient: share of the colour that answers the sky, as in `Phong`.
+        coordinates: what the four axes count, o being the eye and l the light. `angles`: theta_o, phi_o, theta_l,
+            phi_l. `difference`: theta_o, one node, theta_l, phi_l - phi_o. `half` (Rusinkiewicz 1998, as the files of
+            Matusik et al. 2003): the square root of theta_h over a right angle, one node, theta_d, phi_d.
+        nodes: of each axis, rising; angles [rad], theta from the normal, phi from the tangent. Beyond the ends of an
+            axis its last node counts; azimuths close after a turn, phi_d after a half.
+        values: (a, b, c, d, 3) BRDF, 1/sr.
+        ambient: share of the colour that answers the sky, as in `Phong`.
     """
 
-    brdf: Table | Merl
+    coordinates: Coordinates
+    nodes: tuple[NDArray[np.floating], NDArray[np.floating], NDArray[np.floating], NDArray[np.floating]]
+    values: NDArray[np.floating]
     ambient: float = 0.0
 
 
@@ -113,7 +98,6 @@ class DirectionalWorld:
         two_sided: whether a face seen from behind turns its normal.
         sun: unit vector to it. e_sun: irradiance facing it. e_sky: of the sky on the horizontal. All W m-2.
         parts: models of reflection and their weights; what they send adds up.
-        lamp: a point light that Phong's model answers, too.
         shadows: whether the subject shadows itself, by sun, lamp, sky and mirror.
         background: radiance behind everything, for directions (M, 3) -> (M, 3); None leaves it empty.
     """
@@ -127,7 +111,6 @@ class DirectionalWorld:
     e_sun: Colour3 = (0.0, 0.0, 0.0)
     e_sky: Colour3 = (0.0, 0.0, 0.0)
     parts: tuple[tuple[float, Part], ...] = field(default=())
-    lamp: Lamp | None = None
     shadows: bool = True
     background: Callable[[Floats], Floats] | None = None
 
@@ -154,13 +137,33 @@ class DirectionalWorld:
             _check(part)
 
 
+def part_of(plain: Mapping[str, Any]) -> tuple[float, Part]:
+    """A part and its weight from plain values.
+
+    Args:
+        plain: `kind` (`phong`, `surroundings`, `measured`), the fields of that part by name, a lamp as its `place` and
+            `intensity`, and `weight`, 1 where there is none.
+
+    Raises:
+        InputError: another kind.
+    """
+    given = {name: value for name, value in plain.items() if name not in ("kind", "weight")}
+    weight = float(plain.get("weight", 1.0))
+    if plain["kind"] == "phong":
+        lamp = given.pop("lamp", None)
+        return weight, Phong(**given, lamp=None if lamp is None else Lamp(**lamp))
+    if plain["kind"] == "surroundings":
+        return weight, Surroundings(**given)
+    if plain["kind"] == "measured":
+        return weight, Measured(**given)
+    raise InputError("kind", "names no light", "phong, surroundings or measured")
+
+
 def _check(part: Part) -> None:
     """Refuse pictures and tables whose sides do not fit."""
     if isinstance(part, Surroundings) and (part.image.ndim != 3 or part.image.shape[2] != 3):
         raise InputError("image", f"has shape {part.image.shape}", "(H, W, 3)")
-    if isinstance(part, Measured) and isinstance(part.brdf, Table):
-        table = part.brdf
-        nodes = [table.theta_o, *([] if table.phi_o is None else [table.phi_o]), table.theta_l, table.phi_l]
-        wanted = (*(len(each) for each in nodes), 3)
-        if table.values.shape != wanted:
-            raise InputError("values", f"has shape {table.values.shape}", str(wanted))
+    if isinstance(part, Measured):
+        wanted = (*(len(each) for each in part.nodes), 3)
+        if part.values.shape != wanted:
+            raise InputError("values", f"has shape {part.values.shape}", str(wanted))

@@ -11,7 +11,7 @@ from renderer.core.errors import InputError
 from renderer.reference.directional import Options, render
 from renderer.reference.directional_light import phong
 from renderer.reference.directional_mesh import Hits
-from renderer.reference.directional_world import DirectionalWorld, Lamp, Measured, Phong, Surroundings, Table
+from renderer.reference.directional_world import DirectionalWorld, Lamp, Measured, Phong, Surroundings, part_of
 from tests.reference.directional import CENTRE, E_SUN, ball, beams, quads, seen, square, unit
 
 MATT = ((1.0, Phong(0.0, 1.0, 0.0, 1.0)),)
@@ -113,17 +113,17 @@ def test_a_squares_shadow_is_its_projection() -> None:
     # the sun stands in the east: the shadow falls 5 * 0.6 / 0.8 westwards
     inside = (np.abs(x + 3.75) < 2) & (np.abs(y) < 2)
     assert (sun != inside).all()
-    lamp = Lamp((1.0, 0.0, 10.0), (100.0, 100.0, 100.0))
+    lamp = Phong(0.0, 1.0, 0.0, 1.0, Lamp((1.0, 0.0, 10.0), (100.0, 100.0, 100.0)))
     # from twice the plate's height it doubles, about the lamp's foot
-    found = lit_points(quads([GROUND, PLATE], parts=MATT, lamp=lamp), x, y)
+    found = lit_points(quads([GROUND, PLATE], parts=((1.0, lamp),)), x, y)
     assert (found != ((np.abs(x + 1) < 4) & (np.abs(y) < 4))).all()
     bare = lit_points(quads([GROUND, PLATE], parts=MATT, sun=SUN, e_sun=E_SUN, shadows=False), x, y)
     assert bare.all()
 
 
 def test_what_stands_behind_a_lamp_throws_no_shadow() -> None:
-    lamp = Lamp((0.0, 0.0, 3.0), (9.0, 18.0, 27.0))
-    found = seen(quads([GROUND, PLATE], parts=MATT, lamp=lamp), beams([0, 0, 1], [0, 0, -1]))
+    lamp = Phong(0.0, 1.0, 0.0, 1.0, Lamp((0.0, 0.0, 3.0), (9.0, 18.0, 27.0)))
+    found = seen(quads([GROUND, PLATE], parts=((1.0, lamp),)), beams([0, 0, 1], [0, 0, -1]))
     assert found[0, :3] == pytest.approx(0.5 / np.pi * np.array([1.0, 2.0, 3.0]), rel=1e-4)
 
 
@@ -166,13 +166,30 @@ def test_a_face_from_behind_turns_its_normal_only_where_it_has_two_sides() -> No
 
 
 def test_parts_add_up_by_their_weights_and_materials_stand_in_the_suns_irradiance() -> None:
-    nodes = np.array([0.0, np.pi / 2])
-    even = Table(np.full((2, 2, 1, 3), 0.2), nodes, nodes, np.zeros(1))
+    polar, one_node = np.array([0.0, np.pi / 2]), np.zeros(1)
+    even = Measured("difference", (polar, one_node, polar, one_node), np.full((2, 1, 2, 1, 3), 0.2), 0.5)
     looking, light = beams([0, 0, 3], [0.2, 0.1, -1]), {"sun": SUN, "e_sun": E_SUN, "e_sky": (1.0, 2.0, 3.0)}
-    one = seen(quads([square(1, 0)], parts=((1.0, Measured(even, 0.5)),), **light), looking)[0, :3]
+    one = seen(quads([square(1, 0)], parts=((1.0, even),), **light), looking)[0, :3]
     assert one == pytest.approx(0.2 * 0.8 * np.array(E_SUN) + 0.5 * 0.5 / np.pi * np.array([1.0, 2.0, 3.0]))
-    two = seen(quads([square(1, 0)], parts=((0.25, Measured(even, 0.5)), (2.0, MATT[0][1])), **light), looking)[0, :3]
+    two = seen(quads([square(1, 0)], parts=((0.25, even), (2.0, MATT[0][1])), **light), looking)[0, :3]
     assert two == pytest.approx(0.25 * one + 2 * 0.5 / np.pi * 0.8 * np.array(E_SUN))
+
+
+def test_parts_are_made_of_plain_values() -> None:
+    lamp = {"place": (0.0, 0.0, 3.0), "intensity": (9.0, 18.0, 27.0)}
+    phong = {"kind": "phong", "weight": 0.5, "ambient": 0.1, "diffuse": 0.2, "specular": 0.3, "exponent": 4.0}
+    assert part_of({**phong, "lamp": lamp}) == (0.5, Phong(0.1, 0.2, 0.3, 4.0, Lamp(**lamp)))
+    assert part_of(phong) == (0.5, Phong(0.1, 0.2, 0.3, 4.0))
+    image, nodes = np.zeros((2, 4, 3)), (np.zeros(1),) * 4
+    assert part_of({"kind": "surroundings", "image": image, "rotation": 1.0, "diffuse": 0.4, "specular": 0.6}) == (
+        1.0, Surroundings(image, 1.0, 0.4, 0.6)
+    )  # fmt: skip
+    values = np.zeros((1, 1, 1, 1, 3))
+    assert part_of({"kind": "measured", "coordinates": "half", "nodes": nodes, "values": values, "ambient": 0.2}) == (
+        1.0, Measured("half", nodes, values, 0.2)
+    )  # fmt: skip
+    with pytest.raises(InputError, match="kind"):
+        part_of({"kind": "gouraud"})
 
 
 def test_what_misses_is_empty_or_the_background() -> None:
@@ -196,6 +213,6 @@ def test_what_does_not_fit_is_refused() -> None:
             dataclasses.replace(world, **{name: value})
     with pytest.raises(InputError, match="image"):
         dataclasses.replace(world, parts=((1.0, Surroundings(np.zeros((4, 8)), 0, 1, 1)),))
-    wrong = Table(np.zeros((2, 2, 3, 3)), np.arange(2.0), np.arange(2.0), np.arange(2.0))
+    wrong = Measured("angles", (np.arange(2.0),) * 4, np.zeros((2, 2, 3, 2, 3)))
     with pytest.raises(InputError, match="values"):
-        dataclasses.replace(world, parts=((1.0, Measured(wrong)),))
+        dataclasses.replace(world, parts=((1.0, wrong),))

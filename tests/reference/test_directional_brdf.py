@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from renderer.reference.directional_brdf import reflected
-from renderer.reference.directional_world import Merl, Table
+from renderer.reference.directional_world import Measured
 from tests.reference.directional import unit
 
 RNG = np.random.default_rng(11)
@@ -28,19 +28,20 @@ def bent(phi: np.ndarray, count: int) -> np.ndarray:
     return np.asarray(np.interp(phi, ring, np.cos(ring)))
 
 
-def table(to: int = 5, po: int = 8, tl: int = 4, pl: int = 6) -> Table:
+def table(to: int = 5, po: int = 8, tl: int = 4, pl: int = 6) -> Measured:
     """What is straight in each angle, so that five bilinear interpolations hit it everywhere."""
     theta_o, theta_l = np.linspace(0, 1.5, to), np.linspace(0, 1.4, tl) ** 1.3
     phi_o, phi_l = (2 * np.pi * np.arange(n) / n for n in (po, pl))
     parts = (1 + theta_o, 2 + bent(phi_o, po), 3 - theta_l, 2 + bent(phi_l, pl))
     whole = np.einsum("a,b,c,d->abcd", *parts)
-    return Table(np.stack([whole, 2 * whole, whole + 1], axis=-1), theta_o, theta_l, phi_l, phi_o)
+    values = np.stack([whole, 2 * whole, whole + 1], axis=-1)
+    return Measured("angles", (theta_o, phi_o, theta_l, phi_l), values)
 
 
 def test_five_bilinear_interpolations() -> None:
     eye, light = directions(), directions()
     (to, po), (tl, pl) = angles(eye), angles(light)
-    horizon = table().theta_l[-1]
+    horizon = table().nodes[2][-1]
     right = (1 + np.minimum(to, 1.5)) * (2 + bent(po, 8)) * (3 - np.minimum(tl, horizon)) * (2 + bent(pl, 6))
     found = reflected(table(), eye, light)
     assert found == pytest.approx(np.stack([right, 2 * right, right + 1], axis=1), rel=1e-12)
@@ -55,8 +56,8 @@ def test_eye_and_light_are_told_apart() -> None:
 
 def test_an_isotropic_table_counts_from_the_eyes_azimuth_to_the_lights() -> None:
     theta_o, theta_l, turn = np.linspace(0, 1.5, 4), np.linspace(0, 1.5, 5), 2 * np.pi * np.arange(7) / 7
-    values = np.einsum("a,b,c->abc", 1 + theta_o, 2 + theta_l, 2 + np.sin(turn))[..., None] * [1, 2, 3]
-    whole = Table(values, theta_o, theta_l, turn)
+    values = np.einsum("a,c,d->acd", 1 + theta_o, 2 + theta_l, 2 + np.sin(turn))[:, None, ..., None] * [1, 2, 3]
+    whole = Measured("difference", (theta_o, np.zeros(1), theta_l, turn), values)
     eye, light = directions(), directions()
     (to, po), (tl, pl) = angles(eye), angles(light)
     ring = np.linspace(0, 2 * np.pi, 8)
@@ -75,15 +76,13 @@ def test_below_the_horizon_is_the_horizon() -> None:
     assert reflected(table(), eye, light) == pytest.approx(reflected(table(), level, light))
 
 
-def merl() -> Merl:
-    """Every cell told from every other."""
-    h, d, p = np.meshgrid(np.arange(90), np.arange(90), np.arange(180), indexing="ij")
-    return Merl(np.stack([h, d, p], axis=-1).astype(np.float32))
-
-
-def test_merls_cells_are_found_in_the_half_vectors_coordinates() -> None:
+def test_the_half_vectors_coordinates() -> None:
     """By the definitions, without a rotation: the angle of h to the normal and of the light to h, and the angle between
     the planes of (h, normal) and (h, light)."""
+    root, theta_d = np.linspace(0, 1, 6), np.linspace(0, np.pi / 2, 5) ** 1.2
+    phi_d = np.pi * np.arange(7) / 7
+    values = np.einsum("a,c,d->acd", 1 + root, 2 + theta_d, 2 + np.sin(2 * phi_d))[:, None, ..., None] * [1, 2, 3]
+    material = Measured("half", (root, np.zeros(1), theta_d, phi_d), values)
     eye, light = directions(), directions()
     half = unit(eye + light)
     h, d = np.arccos(half[:, 2]), np.arccos(np.sum(half * light, axis=1))
@@ -91,18 +90,9 @@ def test_merls_cells_are_found_in_the_half_vectors_coordinates() -> None:
     first = unit(half * half[:, 2:] - [0, 0, 1])
     second = np.cross(half, first)
     p = np.arctan2(np.sum(light * second, axis=1), np.sum(light * first, axis=1)) % np.pi
-    place = np.stack([np.sqrt(h / (np.pi / 2)) * 90, d / (np.pi / 2) * 90, p / np.pi * 180], axis=1)
-    found = reflected(merl(), eye, light)
-    inside = (np.abs(place - np.rint(place)) > 1e-6).all(axis=1)
-    assert inside.mean() > 0.9
-    assert (found[inside] == np.floor(place[inside])).all()
-
-
-def test_merls_materials_are_reciprocal_and_isotropic_and_never_negative() -> None:
-    eye, light = directions(), directions()
-    here = reflected(merl(), eye, light)
-    there = reflected(merl(), light, eye)
-    assert (here == there).all(axis=1).mean() > 0.99, "but for cells' borders"
-    assert np.abs(here - reflected(merl(), eye * [-1, -1, 1], light * [-1, -1, 1])).max() <= 1
-    unmeasured = Merl(np.full((90, 90, 180, 3), -0.5))
-    assert (reflected(unmeasured, eye, light) == 0).all()
+    around = np.interp(p, np.append(phi_d, np.pi), np.append(np.sin(2 * phi_d), 0))
+    right = (1 + np.sqrt(h / (np.pi / 2))) * (2 + np.minimum(d, theta_d[-1])) * (2 + around)
+    found = reflected(material, eye, light)
+    assert found == pytest.approx(right[:, None] * [1, 2, 3], rel=1e-9)
+    assert reflected(material, light, eye) == pytest.approx(found, rel=1e-9), "reciprocal"
+    assert reflected(material, eye * [-1, -1, 1], light * [-1, -1, 1]) == pytest.approx(found, rel=1e-9), "isotropic"

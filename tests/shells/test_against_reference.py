@@ -14,7 +14,7 @@ from renderer.core.params import validate
 from renderer.shells.bakes import bakes
 from renderer.shells.state import ShellsState
 from renderer.shells.world_arrays import world_arrays
-from renderer.truth import RENDER
+from renderer.truth_scenes import RENDER
 from renderer.world.camera import rays
 from tests.shells.conftest import PLAIN, even
 
