@@ -13,7 +13,7 @@ Cost = Literal["live", "build", "bake", "host"]
 """What a change of the parameter costs: the next frame, a recompilation, a precomputation, or nothing on the GPU."""
 
 Unit = Literal[
-    "", "um", "m", "km", "deg", "s", "h", "m s-1", "m-1", "ratio", "px", "EV", "W m-2", "W m-2 sr-1", "date",
+    "", "um", "m", "km", "deg", "s", "h", "m s-1", "m-1", "ratio", "px", "EV", "W m-2", "W m-2 sr-1", "W sr-1", "date",
     "count", "voxel",
 ]
 

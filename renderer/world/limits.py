@@ -34,6 +34,14 @@ class Limits(Model):
         ge=3,
     )
     voxels: int = param(64_000_000, label="Voxels", help="Most voxels of a volume.", unit="count", cost="host", ge=1)
+    brdf_values: int = param(
+        4_000_000,
+        label="Reflectances",
+        help="Most pairs of directions of a tabulated reflectance.",
+        unit="count",
+        cost="host",
+        ge=1,
+    )
     texture_pixels: int = param(
         33_554_432, label="Texture pixels", help="Most pixels of one embedded picture.", unit="count", cost="host", ge=1
     )

@@ -1,0 +1,1 @@
+"""Techniques of the slot light: how a point returns the light that reaches it."""
