@@ -1,0 +1,3 @@
+float self_shadow_visibility(Surfel surfel, vec3 towards) {
+    return step(0.0, dot(towards, surfel.normal));
+}
