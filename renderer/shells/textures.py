@@ -66,7 +66,7 @@ def upload(gl: GL, texture: ShellTexture, voxels: Voxels, thickness: float, leve
         greatest = 1.0
         parts = [(texture.colour, texture.normal)]
         for level in made[1:]:
-            parts.append(_straight(level, parts[-1][0]))
+            parts.append(_straight(level, *parts[-1]))
     else:
         parts = [(level.matter, level.surface) for level in made]
     kind = storage_of(voxels, float(texture.colour[..., :3].max()), float(texture.colour[..., 3].max()))
@@ -102,18 +102,17 @@ def _stored(array: np.ndarray, factor: float, storage: str, signed: bool) -> np.
     return halves(array, factor) if storage == "half" else array * np.float32(factor)
 
 
-def _straight(level: Extinct, finer: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _straight(level: Extinct, finer: np.ndarray, faces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Colour and alpha of a reference length, and normal and glow, of a level.
 
     Args:
-        finer: colour and alpha of the level before, whose colours stand where there is nothing: what is interpolated
-            between matter and nothing must not darken.
+        finer, faces: the same of the level before, whose colours and normals stand where there is nothing: what is
+            interpolated between matter and nothing must neither darken nor lose the side that it shows to the light.
     """
     extinction = level.matter[..., 3:]
     there = np.broadcast_to(extinction > 0, level.matter.shape)
-    around = _halved(finer)
-    colour = np.divide(level.matter, extinction, out=around, where=there)
-    surface = np.divide(level.surface, extinction, out=np.zeros_like(level.surface), where=there)
+    colour = np.divide(level.matter, extinction, out=_halved(finer), where=there)
+    surface = np.divide(level.surface, extinction, out=_halved(faces), where=there)
     colour[..., 3:] = -np.expm1(-extinction)
     return colour, surface
 

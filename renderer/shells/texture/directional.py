@@ -15,6 +15,7 @@ from renderer.shells.texture.pyramid import (
     cells,
     halved,
     rescaled,
+    shown,
 )
 
 
@@ -54,7 +55,7 @@ def directional_pyramid(finest: Extinct, voxel: Extents) -> list[Directional]:
     levels = [Directional(np.stack([finest.matter] * 3), finest.surface)]
     # Arrays are [k, j, i]: u is their last axis.
     columns, length = [finest.matter] * 2, list(voxel[:2])
-    means = finest
+    faces = shown(finest)
     for above in above_pyramid(finest, voxel)[1:]:
         shape = above.matter.shape[:3]
         along = np.empty((3, *shape, 4), np.float32)
@@ -66,10 +67,10 @@ def directional_pyramid(finest: Extinct, voxel: Extents) -> list[Directional]:
             for across in {0, 1, 2} - {axis}:
                 beside = averaged(beside, across, shape[across])
             along[k] = _extinct(beside, length[k])
-        means = halved(means)
+        faces = halved(faces)
         along[2] = above.matter
         levels.append(
-            Directional(along, rescaled(means.surface, means.matter[..., 3], along[..., 3].mean(axis=0)))
+            Directional(along, rescaled(faces.surface, faces.matter[..., 0], along[..., 3].mean(axis=0)))
         )
     return levels
 

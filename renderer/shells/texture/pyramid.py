@@ -25,6 +25,9 @@ Extents = tuple[float, float, float]
 LEAST = np.float32(1e-30)
 """Least transmittance of a voxel, so that its logarithm stays a number."""
 
+HIDDEN = np.float32(0.01)
+"""Share of a voxel that counts as seen though all around it is opaque, so that its normal stays a number."""
+
 SEEN = np.float32(1e-6)
 """Share of the light below which a voxel counts as hidden from above."""
 
@@ -47,7 +50,7 @@ def thesis_pyramid(finest: Extinct, voxel: Extents) -> list[Extinct]:
     Args:
         finest: level 0. voxel: its voxels' sides in reference lengths.
     """
-    levels, height, means = [finest], np.float32(voxel[2]), finest
+    levels, height, faces = [finest], np.float32(voxel[2]), shown(finest)
     while max(levels[-1].matter.shape[:3]) > 1:
         matter = np.ascontiguousarray(levels[-1].matter, np.float32)
         shape = tuple(max(1, length // 2) for length in matter.shape[:3])
@@ -55,8 +58,8 @@ def thesis_pyramid(finest: Extinct, voxel: Extents) -> list[Extinct]:
         (rows, row_parts), (down, down_parts), (beside, beside_parts) = map(cells, matter.shape[:3], shape)
         _joined(matter, rows, row_parts, down, down_parts, beside, beside_parts, height, found)
         height *= np.float32(matter.shape[0] / shape[0])
-        means = halved(means)
-        levels.append(Extinct(found, rescaled(means.surface, means.matter[..., 3], found[..., 3])))
+        faces = halved(faces)
+        levels.append(Extinct(found, rescaled(faces.surface, faces.matter[..., 0], found[..., 3])))
     return levels
 
 
@@ -120,6 +123,7 @@ def above_pyramid(finest: Extinct, voxel: Extents) -> list[Extinct]:
         finest: level 0. voxel: its voxels' sides in reference lengths.
     """
     levels, means, light = [finest], finest, np.empty(0, np.float32)
+    faces = shown(finest)
     while max(levels[-1].matter.shape[:3]) > 1:
         shape = tuple(max(1, length // 2) for length in levels[-1].matter.shape[:3])
         if len(levels) == 1:
@@ -128,9 +132,9 @@ def above_pyramid(finest: Extinct, voxel: Extents) -> list[Extinct]:
             _from_above(np.ascontiguousarray(finest.matter, np.float32), *across, np.float32(voxel[2]), light)
         else:
             light = averaged(averaged(light, 1, shape[1]), 2, shape[2])
-        means = halved(means)
+        means, faces = halved(means), halved(faces)
         found = _taken(light, shape[0], voxel[2], means.matter)
-        levels.append(Extinct(found, rescaled(means.surface, means.matter[..., 3], found[..., 3])))
+        levels.append(Extinct(found, rescaled(faces.surface, faces.matter[..., 0], found[..., 3])))
     return levels
 
 
@@ -190,6 +194,41 @@ def _taken(light: np.ndarray, count: int, height: float, means: np.ndarray) -> n
     factor = np.divide(extinction, lost, out=np.zeros_like(lost), where=seen & (lost > 0))
     found = np.concatenate([(at[1:, ..., :3] - at[:-1, ..., :3]) * factor[..., None], extinction[..., None]], axis=-1)
     return np.where(seen[..., None], found, means[::-1])[::-1]
+
+
+def shown(finest: Extinct) -> Extinct:
+    """Surfaces weighted by how much of their voxels is seen: by its opacity, and by what its six neighbours let through
+    on the average. What lies within opaque matter has no part in the normals of coarser levels.
+
+    Returns:
+        the weights in place of the extinction, the colours left out.
+    """
+    extinction = np.ascontiguousarray(finest.matter[..., 3], np.float32)
+    found = Extinct(np.zeros((*extinction.shape, 1), np.float32), np.empty_like(finest.surface))
+    passes = np.exp(-extinction)
+    _shown(extinction, passes, np.ascontiguousarray(finest.surface, np.float32), found.matter, found.surface)
+    return found
+
+
+@numba.njit(cache=True, nogil=True, fastmath=True)
+def _shown(extinction, passes, surface, weights, found):
+    layers, rows, columns = extinction.shape
+    for k in range(layers):
+        for j in range(rows):
+            for i in range(columns):
+                own = extinction[k, j, i]
+                weight = np.float32(0)
+                if own > 0:
+                    # Above is the open air, below is a surface that shows nothing.
+                    clear = passes[k + 1, j, i] if k + 1 < layers else np.float32(1)
+                    clear += passes[k - 1, j, i] if k > 0 else np.float32(0)
+                    clear += passes[k, j - 1, i] + passes[k, (j + 1) % rows, i]
+                    clear += passes[k, j, i - 1] + passes[k, j, (i + 1) % columns]
+                    weight = (np.float32(1) - passes[k, j, i]) * (clear + HIDDEN)
+                weights[k, j, i, 0] = weight
+                factor = weight / own if own > 0 else np.float32(0)
+                for n in range(4):
+                    found[k, j, i, n] = factor * surface[k, j, i, n]
 
 
 def rescaled(surface: np.ndarray, weight: np.ndarray, extinction: np.ndarray) -> np.ndarray:

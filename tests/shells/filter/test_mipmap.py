@@ -54,7 +54,7 @@ def test_columns_stay_as_thin_as_they_are(draw: Draw) -> None:
 
 
 @pytest.mark.parametrize(
-    ("right", "wrong"), [("pixel_width(distance) * finest", "finest"), ("0.0, filter_coarsest)", "0.0, 0.0)")]
+    ("right", "wrong"), [("pixel_width(distance) * widest", "widest"), ("0.0, filter_coarsest)", "0.0, 0.0)")]
 )
 def test_a_wrong_width_is_found(draw: Draw, spoil: Callable, right: str, wrong: str) -> None:
     with spoil("shells/filter/mipmap.glsl", right, wrong):

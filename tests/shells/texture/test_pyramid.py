@@ -113,17 +113,36 @@ def from_above(matter: np.ndarray, layers: int) -> np.ndarray:
     return np.concatenate([seen.sum(axis=0), 1 - before[-1][..., None]], axis=-1)
 
 
-def test_surfaces_are_means_weighted_by_extinction() -> None:
+def test_surfaces_are_means_of_what_is_seen_of_them() -> None:
+    """By the opacity of a voxel and by what is left between it and its six neighbours; means of the extinction have
+    means by the extinction."""
     fine = chance((4, 4, 4), 3)
-    normal, glow = (fine.surface[..., part].sum(axis=(0, 1, 2)) / fine.matter[..., 3].sum()
-                    for part in (slice(0, 3), 3))
-    last = [thesis_pyramid(fine, CUBES)[-1], above_pyramid(fine, CUBES)[-1], mean_pyramid(fine)[-1]]
-    found = [(level.surface[0, 0, 0], level.matter[0, 0, 0, 3]) for level in last]
+    passes = np.exp(-fine.matter[..., 3].astype(float))
+    clear = sum(np.roll(passes, step, axis) for axis in (1, 2) for step in (1, -1))
+    clear += np.concatenate([passes[1:], np.ones_like(passes[:1])]) + np.concatenate([0 * passes[:1], passes[:-1]])
+    weights = {"seen": (1 - passes) * (clear + 0.01), "mean": fine.matter[..., 3]}
+    own = np.divide(fine.surface, fine.matter[..., 3:], out=np.zeros_like(fine.surface),
+                    where=fine.matter[..., 3:] > 0)  # fmt: skip
+    wanted = {name: (own * weight[..., None]).sum(axis=(0, 1, 2)) / weight.sum() for name, weight in weights.items()}
+    assert np.abs(wanted["seen"] - wanted["mean"]).max() > 0.01
+    last = [("seen", thesis_pyramid(fine, CUBES)[-1]), ("seen", above_pyramid(fine, CUBES)[-1]),
+            ("mean", mean_pyramid(fine)[-1])]  # fmt: skip
+    found = [(name, level.surface[0, 0, 0] / level.matter[0, 0, 0, 3]) for name, level in last]
     coarsest = directional_pyramid(fine, CUBES)[-1]
-    found.append((coarsest.surface[0, 0, 0], coarsest.along[:, 0, 0, 0, 3].mean()))
-    for surface, extinction in found:
-        np.testing.assert_allclose(surface[:3] / extinction, normal, atol=1e-5)
-        np.testing.assert_allclose(surface[3] / extinction, glow, rtol=1e-5)
+    found.append(("seen", coarsest.surface[0, 0, 0] / coarsest.along[:, 0, 0, 0, 3].mean()))
+    for name, surface in found:
+        np.testing.assert_allclose(surface, wanted[name], atol=1e-5)
+
+
+def test_what_lies_within_opaque_matter_does_not_turn_the_light() -> None:
+    """A slab whose upper half faces up and whose lower half faces down: from outside both are seen as they are."""
+    matter, surface = np.zeros((8, 4, 4, 4), np.float32), np.zeros((8, 4, 4, 4), np.float32)
+    matter[2:7, ..., 3] = 8.0
+    surface[2:4, ..., 2], surface[4:7, ..., 2] = -8.0, 8.0
+    level = thesis_pyramid(Extinct(matter, surface), CUBES)[1]
+    up = level.surface[..., 2] / np.maximum(level.matter[..., 3], 1e-9)
+    np.testing.assert_allclose(up[3], 1.0, atol=1e-3)
+    np.testing.assert_allclose(up[1], -1.0, atol=1e-3)
 
 
 def test_voxels_of_any_sides_have_their_extents() -> None:
