@@ -41,7 +41,7 @@ NOT_THE_WORLD: Mapping[str, tuple[str, ...]] = {
     "forest": ("version", "quality", "view", "time"),
     "clouds": ("version", "quality", "view"),
     "shells": ("version", "quality", "view"),
-    "directional": ("version", "quality", "view", "time", "cloud", "visibility"),
+    "directional": ("version", "quality", "view", "time", "cloud", "visibility", "hemispheres"),
 }
 """Fields of a state, beside its slots, that change no reference: time is the world's where clouds drift."""
 

@@ -128,10 +128,14 @@ def _directional(
 ) -> Arrays:
     """Cast rays on the subject's own mesh."""
     from renderer.reference.directional import Options, render
-    from renderer.reference.directional_world import DirectionalWorld, part_of
+    from renderer.reference.directional_world import DirectionalWorld, Lamp, part_of
 
-    plain = {name: value for name, value in world.items() if name != "light"} | dict(options)
-    subject = DirectionalWorld(**plain, parts=tuple(part_of(each) for each in world["light"]["parts"]))
+    plain = {name: value for name, value in world.items() if name not in ("light", "lamp")} | dict(options)
+    subject = DirectionalWorld(
+        **plain,
+        parts=tuple(part_of(each) for each in world["light"]),
+        lamp=None if world["lamp"] is None else Lamp(**world["lamp"]),
+    )
     return _in_two(
         lambda places, seed, tell: render(subject, looking, places, Options(seed=1 + seed), tell), positions, progress
     )

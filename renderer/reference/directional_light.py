@@ -10,7 +10,7 @@ import numpy as np
 from renderer.reference.directional_brdf import reflected
 from renderer.reference.directional_mesh import Hits, Subject, frames
 from renderer.reference.directional_surroundings import Picture
-from renderer.reference.directional_world import DirectionalWorld, Floats, Lamp, Measured, Phong, Surroundings
+from renderer.reference.directional_world import DirectionalWorld, Floats, Measured, Phong, Surroundings
 
 
 class Shading:
@@ -42,14 +42,12 @@ class Shading:
         sun = np.broadcast_to(np.asarray(world.sun, np.float64), (count, 3))
         sunlit = self._free(hits, sun)[:, None] * np.asarray(world.e_sun)
         found, gathered = np.zeros((count, 3)), np.zeros((count, 3))
+        lamp, lamplit = self._lamp(hits)
         for weight, part in world.parts:
-            if isinstance(part, Phong):
-                found += weight * phong(part, hits, sun) * sunlit
-                if part.lamp is not None:
-                    found += weight * self._lamp(part, part.lamp, hits)
-                gathered += weight * part.ambient * self._sky(hits)
-            elif isinstance(part, Measured):
-                found += weight * _measured(part, hits, sun) * sunlit
+            if not isinstance(part, Surroundings):
+                found += weight * _sent(part, hits, sun) * sunlit
+                if world.lamp is not None:
+                    found += weight * _sent(part, hits, lamp) * lamplit
                 gathered += weight * part.ambient * self._sky(hits)
             else:
                 picture = self.pictures[id(part)]
@@ -65,12 +63,16 @@ class Shading:
         share = (1 + hits.normal[:, 2:]) / 2
         return np.asarray(hits.colour / math.pi * np.asarray(self.world.e_sky) * share)
 
-    def _lamp(self, part: Phong, lamp: Lamp, hits: Hits) -> Floats:
+    def _lamp(self, hits: Hits) -> tuple[Floats, Floats]:
+        """Directions to the lamp (M, 3) and its irradiance facing it (M, 3); nothing where there is none."""
+        lamp = self.world.lamp
+        if lamp is None:
+            return hits.normal, np.zeros_like(hits.normal)
         away = np.asarray(lamp.place, np.float64) - hits.place
         distance = np.maximum(np.linalg.norm(away, axis=1), 1e-12)
         towards = away / distance[:, None]
-        lit = self._free(hits, towards, distance)[:, None] * np.asarray(lamp.intensity) / distance[:, None] ** 2
-        return phong(part, hits, towards) * lit
+        lit = self._free(hits, towards, distance)[:, None]
+        return towards, lit * np.asarray(lamp.intensity) / distance[:, None] ** 2
 
     def _free(self, hits: Hits, towards: Floats, reach: Floats | None = None) -> Floats:
         """1 where light comes from a direction, 0 below the horizon or behind the subject, (M,)."""
@@ -84,6 +86,10 @@ class Shading:
 def mirror(directions: Floats, normals: Floats) -> Floats:
     """Directions (M, 3) mirrored about normals."""
     return 2 * np.einsum("md,md->m", directions, normals)[:, None] * normals - directions
+
+
+def _sent(part: Phong | Measured, hits: Hits, towards: Floats) -> Floats:
+    return phong(part, hits, towards) if isinstance(part, Phong) else _measured(part, hits, towards)
 
 
 def phong(part: Phong, hits: Hits, towards: Floats) -> Floats:

@@ -36,14 +36,12 @@ class Phong:
 
     Attributes:
         ambient, diffuse, specular: shares. The sky's light comes by `ambient`, from the open part of the upper dome.
-        lamp: a point light beside the sun.
     """
 
     ambient: float
     diffuse: float
     specular: float
     exponent: float
-    lamp: Lamp | None = None
 
 
 @dataclass(frozen=True)
@@ -67,7 +65,7 @@ Coordinates = Literal["angles", "difference", "half"]
 
 @dataclass(frozen=True)
 class Measured:
-    """A material as a table in the sun, linear in each coordinate between its nodes.
+    """A material as a table, linear in each coordinate between its nodes.
 
     Attributes:
         coordinates: what the four axes count, o being the eye and l the light. `angles`: theta_o, phi_o, theta_l,
@@ -98,6 +96,7 @@ class DirectionalWorld:
         two_sided: whether a face seen from behind turns its normal.
         sun: unit vector to it. e_sun: irradiance facing it. e_sky: of the sky on the horizontal. All W m-2.
         parts: models of reflection and their weights; what they send adds up.
+        lamp: a point light beside the sun.
         shadows: whether the subject shadows itself, by sun, lamp, sky and mirror.
         background: radiance behind everything, for directions (M, 3) -> (M, 3); None leaves it empty.
     """
@@ -111,6 +110,7 @@ class DirectionalWorld:
     e_sun: Colour3 = (0.0, 0.0, 0.0)
     e_sky: Colour3 = (0.0, 0.0, 0.0)
     parts: tuple[tuple[float, Part], ...] = field(default=())
+    lamp: Lamp | None = None
     shadows: bool = True
     background: Callable[[Floats], Floats] | None = None
 
@@ -141,21 +141,17 @@ def part_of(plain: Mapping[str, Any]) -> tuple[float, Part]:
     """A part and its weight from plain values.
 
     Args:
-        plain: `kind` (`phong`, `surroundings`, `measured`), the fields of that part by name, a lamp as its `place` and
-            `intensity`, and `weight`, 1 where there is none.
+        plain: `kind` (`phong`, `surroundings`, `measured`), the fields of that part by name, and `weight`, 1 where
+            there is none.
 
     Raises:
         InputError: another kind.
     """
     given = {name: value for name, value in plain.items() if name not in ("kind", "weight")}
     weight = float(plain.get("weight", 1.0))
-    if plain["kind"] == "phong":
-        lamp = given.pop("lamp", None)
-        return weight, Phong(**given, lamp=None if lamp is None else Lamp(**lamp))
-    if plain["kind"] == "surroundings":
-        return weight, Surroundings(**given)
-    if plain["kind"] == "measured":
-        return weight, Measured(**given)
+    kinds: Mapping[str, type[Part]] = {"phong": Phong, "surroundings": Surroundings, "measured": Measured}
+    if plain["kind"] in kinds:
+        return weight, kinds[plain["kind"]](**given)
     raise InputError("kind", "names no light", "phong, surroundings or measured")
 
 

@@ -113,17 +113,17 @@ def test_a_squares_shadow_is_its_projection() -> None:
     # the sun stands in the east: the shadow falls 5 * 0.6 / 0.8 westwards
     inside = (np.abs(x + 3.75) < 2) & (np.abs(y) < 2)
     assert (sun != inside).all()
-    lamp = Phong(0.0, 1.0, 0.0, 1.0, Lamp((1.0, 0.0, 10.0), (100.0, 100.0, 100.0)))
+    lamp = Lamp((1.0, 0.0, 10.0), (100.0, 100.0, 100.0))
     # from twice the plate's height it doubles, about the lamp's foot
-    found = lit_points(quads([GROUND, PLATE], parts=((1.0, lamp),)), x, y)
+    found = lit_points(quads([GROUND, PLATE], parts=MATT, lamp=lamp), x, y)
     assert (found != ((np.abs(x + 1) < 4) & (np.abs(y) < 4))).all()
     bare = lit_points(quads([GROUND, PLATE], parts=MATT, sun=SUN, e_sun=E_SUN, shadows=False), x, y)
     assert bare.all()
 
 
 def test_what_stands_behind_a_lamp_throws_no_shadow() -> None:
-    lamp = Phong(0.0, 1.0, 0.0, 1.0, Lamp((0.0, 0.0, 3.0), (9.0, 18.0, 27.0)))
-    found = seen(quads([GROUND, PLATE], parts=((1.0, lamp),)), beams([0, 0, 1], [0, 0, -1]))
+    lamp = Lamp((0.0, 0.0, 3.0), (9.0, 18.0, 27.0))
+    found = seen(quads([GROUND, PLATE], parts=MATT, lamp=lamp), beams([0, 0, 1], [0, 0, -1]))
     assert found[0, :3] == pytest.approx(0.5 / np.pi * np.array([1.0, 2.0, 3.0]), rel=1e-4)
 
 
@@ -176,10 +176,9 @@ def test_parts_add_up_by_their_weights_and_materials_stand_in_the_suns_irradianc
 
 
 def test_parts_are_made_of_plain_values() -> None:
-    lamp = {"place": (0.0, 0.0, 3.0), "intensity": (9.0, 18.0, 27.0)}
-    phong = {"kind": "phong", "weight": 0.5, "ambient": 0.1, "diffuse": 0.2, "specular": 0.3, "exponent": 4.0}
-    assert part_of({**phong, "lamp": lamp}) == (0.5, Phong(0.1, 0.2, 0.3, 4.0, Lamp(**lamp)))
-    assert part_of(phong) == (0.5, Phong(0.1, 0.2, 0.3, 4.0))
+    phong = {"kind": "phong", "ambient": 0.1, "diffuse": 0.2, "specular": 0.3, "exponent": 4.0}
+    assert part_of({**phong, "weight": 0.5}) == (0.5, Phong(0.1, 0.2, 0.3, 4.0))
+    assert part_of(phong) == (1.0, Phong(0.1, 0.2, 0.3, 4.0))
     image, nodes = np.zeros((2, 4, 3)), (np.zeros(1),) * 4
     assert part_of({"kind": "surroundings", "image": image, "rotation": 1.0, "diffuse": 0.4, "specular": 0.6}) == (
         1.0, Surroundings(image, 1.0, 0.4, 0.6)
