@@ -31,11 +31,34 @@ FOOT_REACH = 8.0
 
 
 @njit(cache=True, nogil=True)
+def _carry_in(edge, drift, fall, density, extent, high):
+    """Fill `high` with the highest ray that lines bring to the row before the first: beyond it, land goes on as `edge`.
+
+    Moving along the edge by one line, a ray has come over 1 / (density |drift|) rows.
+    """
+    count, width = len(high), len(edge)
+    along = fall / max(density * abs(drift), 1e-9)
+    carried = np.empty_like(high)
+    for number in range(count):
+        line = number if drift > 0.0 else count - 1 - number
+        place = min(max(line / density - extent, 0.0), width - 1.0)
+        low = min(int(place), width - 2)
+        here = edge[low] + (place - low) * (edge[low + 1] - edge[low])
+        before = -1e9 if number == 0 else carried[line - 1 if drift > 0.0 else line + 1] - along
+        carried[line] = max(here, before)
+    for line in range(count):
+        place = min(max(line - drift * density, 0.0), count - 1.0)
+        low = min(int(place), count - 2)
+        high[line] = carried[low] + (place - low) * (carried[low + 1] - carried[low])
+
+
+@njit(cache=True, nogil=True)
 def _sweep(grid, major, minor, fall, density, choice, result):
     """Height of the shadow's upper side, walking away from the sun along lines of its azimuth.
 
     Lines run along the azimuth, some for each column they start from, and carry the highest ray so far down with them;
-    a node takes what the two lines beside it have. Nothing is interpolated twice.
+    a node takes what the two lines beside it have. Nothing is interpolated twice. Beyond its edge the land goes on as
+    it is there.
 
     Args:
         grid: (N, M) [m], float32. major, minor: of the unit vector to the sun, along the rows' axis and the columns'.
@@ -50,10 +73,13 @@ def _sweep(grid, major, minor, fall, density, choice, result):
     high = np.full((width + 2 * extent) * density, np.float32(-1e9))
     through = np.full_like(high, np.float32(-1e9))
     fall, floor, each = np.float32(fall), np.float32(FLOOR), np.float32(1.0 / density)
+    _carry_in(grid[length - 1 if major > 0 else 0], drift, fall, density, extent, high)
     for walked in range(length):
         row = length - 1 - walked if major > 0 else walked
         start = (extent - drift * walked) * density  # the line, broken, that passes node 0 of this row
-        first, last = max(math.floor(start), 0), min(math.ceil(start + (width - 1) * density), len(high) - 1)
+        entering = drift * (length - 1 - walked) * density  # how far beside the grid lines still come in from
+        first = max(math.floor(start - max(entering, 0.0)), 0)
+        last = min(math.ceil(start + (width - 1) * density - min(entering, 0.0)), len(high) - 1)
         heights, out, begin = grid[row], result[row], np.float32(start - first)
         lines, passing = high[first : last + 1], through[first : last + 1]
         for line in range(last + 1 - first):
@@ -80,7 +106,7 @@ def shadow_height(heights: np.ndarray, cell: float, azimuth: float, elevation: f
         choice: MEAN for the height itself; LOWEST or HIGHEST for a bound of it, which costs less.
 
     Returns:
-        float32 (N, M); `NIGHT` everywhere when the sun is not up. Beyond the edge nothing casts a shadow.
+        float32 (N, M); `NIGHT` everywhere when the sun is not up. Beyond its edge the land goes on as it is there.
     """
     if elevation <= 0:
         return np.full(heights.shape, NIGHT, np.float32)

@@ -10,11 +10,13 @@
 
 #include "forest/crossing.glsl"
 
-// Times that a ray may leave the canopy and meet it again: over one ridge after the other.
-const int VISITS = 8;
+// Times that a ray may leave the canopy and meet it again: over one ridge after the other, and, under a low sun, over every
+// fold of a slope that it skims.
+const int VISITS = 64;
 
-// Height [m] over the canopy's top at which a ray counts as away: more than that at which canopy_entry has it there again.
-const float AWAY = 0.5;
+// Height [m] over the canopy's top at which a ray counts as away: more than that at which canopy_entry has it there again, by
+// as much as a skimmed slope is uneven.
+const float AWAY = 2.0;
 
 // Farthest [m] that a tree's voxels lie from its foot: 8 m along either axis.
 const float CROWN_REACH = 11.4;
