@@ -130,11 +130,10 @@ def _directional(
     from renderer.reference.directional import Options, render
     from renderer.reference.directional_world import DirectionalWorld, Lamp, part_of
 
-    plain = {name: value for name, value in world.items() if name not in ("light", "lamp")} | dict(options)
+    plain = {name: value for name, value in world.items() if name != "light"} | dict(options)
+    parts, lamp = (world["light"].get(name) for name in ("parts", "lamp"))
     subject = DirectionalWorld(
-        **plain,
-        parts=tuple(part_of(each) for each in world["light"]),
-        lamp=None if world["lamp"] is None else Lamp(**world["lamp"]),
+        **plain, parts=tuple(part_of(each) for each in parts), lamp=None if lamp is None else Lamp(**lamp)
     )
     return _in_two(
         lambda places, seed, tell: render(subject, looking, places, Options(seed=1 + seed), tell), positions, progress

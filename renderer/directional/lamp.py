@@ -31,10 +31,3 @@ def lamp_values(lamp: Lamp, baked: Mapping[str, Arrays]) -> dict[str, Any]:
     """
     middle = np.asarray(baked["visibility"]["box"]).mean(axis=0)
     return {"lamp_position": tuple(float(v) for v in np.array(lamp.place) - middle)}
-
-
-def lamp_world(lamp: Lamp) -> dict[str, Any] | None:
-    """What the reference is told of a lamp: `place` [m] and `intensity` [W sr-1]; None of one that is out."""
-    if not lamp.lit:
-        return None
-    return {"place": lamp.place, "intensity": tuple(lamp.intensity * share for share in lamp.colour)}

@@ -56,9 +56,3 @@ class MeasuredBrdf(DirectionalTechnique):
         half = self.storage == "half" or (self.storage == "auto" and table.values.size // 3 >= HALF_FROM)
         texels = plane(table, np.float16 if half else np.float32)
         return {"table": gl.texture2d(texels, "nearest"), "rulers": gl.texture2d(rulers(table), "nearest")}
-
-    def world(self, state: Any, baked: Mapping[str, Arrays]) -> list[dict[str, Any]]:
-        """What the reference is told of this light: its parts, as plain values."""
-        table = table_of(baked["brdf"])
-        own = {"coordinates": table.coordinates, "nodes": table.nodes, "values": table.values}
-        return [{"kind": "measured", **own, "ambient": self.ambient}]

@@ -35,8 +35,3 @@ class Phong(DirectionalTechnique):
     def constants(self, state: Any, baked: Mapping[str, Arrays]) -> dict[str, Any]:
         """Where the lamp is."""
         return lamp_values(state.lamp, baked)
-
-    def world(self, state: Any, baked: Mapping[str, Arrays]) -> list[dict[str, Any]]:
-        """What the reference is told of this light: its parts, as plain values."""
-        shares = {"ambient": self.ambient, "diffuse": self.diffuse, "specular": self.specular}
-        return [{"kind": "phong", **shares, "exponent": self.shininess}]
