@@ -10,12 +10,17 @@ from pydantic import Field, TypeAdapter
 
 from renderer.core.params import bake_arguments
 from renderer.core.technique import Arrays, Bake
+from renderer.directional.subject.basket import Basket
+from renderer.directional.subject.dragon import Dragon
 from renderer.directional.subject.knot import Knot
 from renderer.directional.subject.mesh import OwnMesh
 from renderer.directional.subject.relief import Relief
+from renderer.directional.subject.rock import Rock
 from renderer.directional.subject.solid import compact
+from renderer.directional.subject.teapot import Teapot
+from renderer.directional.subject.tree import Tree
 
-AnySubject = Knot | Relief | OwnMesh
+AnySubject = Dragon | Teapot | Basket | Knot | Rock | Tree | Relief | OwnMesh
 
 Subject = Annotated[AnySubject, Field(discriminator="kind")]
 

@@ -1,7 +1,7 @@
 """What each face of the box sees: per texel and direction, the number of a point (Porquet 2005).
 
-A bake a face, so that one that was stopped goes on where it was; the last one joins them and finds which points any
-texel sees. Porquet drops the others, more than 40 % on average, and so does `used`.
+A long bake is one of each face, so that when it was stopped it goes on where it was; the last one joins them and finds
+which points any texel sees. Porquet drops the others, more than 40 % on average, and so does `used`.
 """
 
 from __future__ import annotations
@@ -19,8 +19,14 @@ from renderer.directional.index_code import packed, unpacked
 
 FACES = 6
 
-RAYS_A_SECOND = 3e6
+RAYS_A_SECOND = 2.5e6
 """About how many are cast and packed."""
+
+WORTH_KEEPING = 10.0
+"""Expected seconds from which on what the first faces saw is kept while the others look."""
+
+REPORTED = 8
+"""Directions between two reports."""
 
 
 class Visibility(Model):
@@ -34,35 +40,37 @@ class Visibility(Model):
     )
 
 
-def bake_face(
+def bake_faces(
     arguments: dict[str, Any], inputs: dict[str, Arrays], progress: Callable[[float, str], None]
 ) -> Arrays:
-    """What one face sees.
+    """What some faces see.
 
     Args:
-        arguments: `face`, `texels`, `directions`.
+        arguments: `faces`, their numbers; `texels`, `directions`.
         inputs: `subject`, `cloud`.
 
     Returns:
-        `data` (B,) uint8 the packed layers, `ends` (directions,) int64 where each ends, `seen` (N,) bool the points.
+        `data_0` ... (B,) uint8 the packed layers of each of these faces, `ends` (faces, directions) int64 where each
+        layer ends, `seen` (N,) bool the points that any of their texels sees.
     """
-    face, texels = int(arguments["face"]), int(arguments["texels"])
+    faces, texels = [int(face) for face in arguments["faces"]], int(arguments["texels"])
     caster = Caster(inputs["subject"], inputs["cloud"])
-    origins = face_middles(caster.box, face, texels)
-    directions = hemisphere_of(int(arguments["directions"])).directions() @ face_frame(face)
     seen = np.zeros(len(inputs["cloud"]["position"]), bool)
-    layers = []
-    for number, direction in enumerate(directions):
-        if number % 8 == 0:
-            progress(number / len(directions), f"looking from face {face + 1} of {FACES}")
-        points = caster.points(origins, -direction)
-        seen[points[points != NONE]] = True
-        layers.append(packed(points))
-    return {
-        "data": np.frombuffer(b"".join(layers), np.uint8),
-        "ends": np.cumsum([len(layer) for layer in layers]),
-        "seen": seen,
-    }
+    directions = hemisphere_of(int(arguments["directions"])).directions()
+    data, ends = {}, []
+    for place, face in enumerate(faces):
+        origins = face_middles(caster.box, face, texels)
+        layers = []
+        for number, direction in enumerate(directions @ face_frame(face)):
+            if number % REPORTED == 0:
+                share = (place + number / len(directions)) / len(faces)
+                progress(share, f"looking from face {face + 1} of {FACES}")
+            points = caster.points(origins, -direction)
+            seen[points[points != NONE]] = True
+            layers.append(packed(points))
+        data[f"data_{face}"] = np.frombuffer(b"".join(layers), np.uint8)
+        ends.append(np.cumsum([len(layer) for layer in layers]))
+    return {**data, "ends": np.stack(ends), "seen": seen}
 
 
 def bake_visibility(
@@ -72,7 +80,7 @@ def bake_visibility(
 
     Args:
         arguments: `texels`, `directions`.
-        inputs: `subject` and `face_0` to `face_5`.
+        inputs: `subject` and bakes of `bake_faces` that have every face once.
 
     Returns:
         `used` (M,) int32 the points that any texel sees, `number` (N,) uint32 the place of each point among them;
@@ -80,18 +88,18 @@ def bake_visibility(
         `layer`; `texels` () and `directions` () int32; `box` (2, 3) [m].
     """
     progress(0.5, "joining what the faces see")
-    faces = [inputs[f"face_{face}"] for face in range(FACES)]
-    used = np.flatnonzero(np.any([face["seen"] for face in faces], axis=0))
-    number = np.full(len(faces[0]["seen"]), NONE, np.uint32)
+    parts = [part for name, part in sorted(inputs.items()) if name != "subject"]
+    used = np.flatnonzero(np.any([part["seen"] for part in parts], axis=0))
+    number = np.full(len(parts[0]["seen"]), NONE, np.uint32)
     number[used] = np.arange(len(used), dtype=np.uint32)
     return {
         "used": used.astype(np.int32),
         "number": number,
-        "ends": np.stack([face["ends"] for face in faces]),
+        "ends": np.concatenate([part["ends"] for part in parts]),
         "texels": np.asarray(arguments["texels"], np.int32),
         "directions": np.asarray(arguments["directions"], np.int32),
         "box": np.asarray(inputs["subject"]["box"]),
-        **{f"data_{number}": face["data"] for number, face in enumerate(faces)},
+        **{name: part[name] for part in parts for name in part if name.startswith("data_")},
     }
 
 
@@ -113,9 +121,12 @@ def layer(arrays: Arrays, face: int, direction: int) -> np.ndarray:
 def visibility_bake(visibility: Visibility, subject: Bake, cloud: Bake) -> Bake:
     """What the faces see of a subject's points."""
     arguments = bake_arguments(visibility)
-    seconds = visibility.texels**2 * visibility.directions / RAYS_A_SECOND
-    faces = tuple(
-        Bake(f"face_{face}", bake_face, {**arguments, "face": face}, (subject, cloud), seconds=0.2 + seconds)
-        for face in range(FACES)
+    seconds = FACES * visibility.texels**2 * visibility.directions / RAYS_A_SECOND
+    # Each part sorts the subject for its rays anew, which a short bake would feel.
+    each = 1 if seconds > WORTH_KEEPING else FACES
+    parts = tuple(
+        Bake(f"faces_{first}", bake_faces, {**arguments, "faces": list(range(first, first + each))}, (subject, cloud),
+             seconds=1 + seconds * each / FACES)
+        for first in range(0, FACES, each)
     )
-    return Bake("visibility", bake_visibility, arguments, (subject, *faces), seconds=0.5 + seconds / 10)
+    return Bake("visibility", bake_visibility, arguments, (subject, *parts), seconds=0.5 + seconds / 20)

@@ -15,9 +15,9 @@ from numpy.typing import NDArray
 
 from renderer.core.errors import InputError
 from renderer.forest.lobe import THESIS, coefficients_of, fit_leaves, leaves_reflect, lobe, pairs, relative_residual
-from renderer.forest.species import species
-from renderer.forest.tree import Tree
 from renderer.forest.world_scale import VOXEL
+from renderer.world.species import species
+from renderer.world.tree import Tree
 
 Floats = NDArray[np.float64]
 

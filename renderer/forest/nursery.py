@@ -10,9 +10,9 @@ import numpy as np
 from renderer.core.cache import AssetStore
 from renderer.core.errors import AssetError, InputError, LimitError
 from renderer.forest.planting import BANDS
-from renderer.forest.species import species
-from renderer.forest.tree import Tree
 from renderer.world.mesh import Mesh, MeshReading, load_mesh
+from renderer.world.species import species
+from renderer.world.tree import Tree
 
 VARIANTS = 4
 """Trees grown of each species."""

@@ -19,8 +19,8 @@ from renderer.forest.safe_distance import safe_distance
 from renderer.forest.seen_levels import OPAQUE, seen_levels
 from renderer.forest.species_alone import of_owner, sections
 from renderer.forest.tiles import RHOMBI, lattice, tile_table
-from renderer.forest.tree import Tree
 from renderer.forest.world_scale import CANOPY_HEIGHT, TILE_SIDE, VOXEL
+from renderer.world.tree import Tree
 from renderer.world.voxelise import Grid, Voxels, opacity_of, voxelise
 
 CELL = round(TILE_SIDE / VOXEL)

@@ -16,8 +16,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from renderer.forest.tiles import BOTTOM, DIAGONAL, EDGES, LEFT, RHOMBI, lattice, triple
-from renderer.forest.tree import Tree
 from renderer.forest.world_scale import TILE_SIDE, VOXEL
+from renderer.world.tree import Tree
 
 MARGIN = 4.5 * VOXEL * np.sqrt(3) / 2
 """Between a crown and any edge that is not its own [m]: four voxels, whose rows stand sin 60 deg apart, and a half

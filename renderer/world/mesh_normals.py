@@ -43,7 +43,7 @@ def vertex_normals(vertices: np.ndarray, faces: np.ndarray) -> np.ndarray:
     return chosen
 
 
-def corner_normals(vertices: np.ndarray, faces: np.ndarray, crease: float = 0.5) -> np.ndarray:
+def corner_normals(vertices: np.ndarray, faces: np.ndarray, crease: float = 0.7) -> np.ndarray:
     """Unit normals (F, 3, 3) of the faces' corners: smooth, but a face's own where the two part by much.
 
     Args:

@@ -9,11 +9,12 @@ from renderer.core.baking import bake_now
 from renderer.core.cache import Cache
 from renderer.core.errors import Cancelled
 from renderer.core.params import bake_arguments
+from renderer.directional import visibility
 from renderer.directional.casting import AXES, NONE, face_frame, face_middles
 from renderer.directional.cloud import Cloud, cloud_bake
 from renderer.directional.hemisphere import hemisphere_of
 from renderer.directional.index_code import packed, unpacked
-from renderer.directional.subject.knot import Knot
+from renderer.directional.subject import knot
 from renderer.directional.subjects import subject_bake
 from renderer.directional.visibility import FACES, Visibility, layer, visibility_bake
 
@@ -21,10 +22,13 @@ from renderer.directional.visibility import FACES, Visibility, layer, visibility
 @pytest.fixture(scope="module")
 def baked(tmp_path_factory: pytest.TempPathFactory) -> dict[str, dict[str, np.ndarray]]:
     cache = Cache(tmp_path_factory.mktemp("cache"))
-    subject = subject_bake(Knot())
-    cloud = cloud_bake(Cloud(points=40_000), subject)
-    visibility = visibility_bake(Visibility(texels=32, directions=33), subject, cloud)
-    return {bake.name: bake_now(bake, cache) for bake in (subject, cloud, visibility)}
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(knot, "ALONG", 700)
+        patch.setattr(knot, "AROUND", 30)
+        subject = subject_bake(knot.Knot())
+        cloud = cloud_bake(Cloud(points=40_000), subject)
+        made = visibility_bake(Visibility(texels=32, directions=33), subject, cloud)
+        return {bake.name: bake_now(bake, cache) for bake in (subject, cloud, made)}
 
 
 @pytest.mark.parametrize("face", range(FACES))
@@ -91,10 +95,17 @@ def test_a_layer_is_packed_without_loss(share: float) -> None:
     assert not (unpacked(packed(numbers[::-1]), 1000) == numbers).all() or share == 0
 
 
-def test_a_stopped_bake_goes_on_where_it_was(tmp_path) -> None:
+def test_a_stopped_bake_goes_on_where_it_was(tmp_path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(knot, "ALONG", 160)
+    monkeypatch.setattr(knot, "AROUND", 15)
     cache = Cache(tmp_path)
-    subject = subject_bake(Knot())
-    bake = visibility_bake(Visibility(texels=16, directions=33), subject, cloud_bake(Cloud(points=5000), subject))
+    subject = subject_bake(knot.Knot())
+    cloud = cloud_bake(Cloud(points=5000), subject)
+    whole = visibility_bake(Visibility(texels=16, directions=33), subject, cloud)
+    assert len(whole.inputs) == 2
+    monkeypatch.setattr(visibility, "WORTH_KEEPING", 0.0)
+    bake = visibility_bake(Visibility(texels=16, directions=33), subject, cloud)
+    assert len(bake.inputs) == 7
     told: list[str] = []
 
     def stop(progress) -> None:
@@ -105,9 +116,11 @@ def test_a_stopped_bake_goes_on_where_it_was(tmp_path) -> None:
     with pytest.raises(Cancelled):
         bake_now(bake, cache, stop)
     told.clear()
-    bake_now(bake, cache, lambda progress: told.append(progress.words))
+    parts = bake_now(bake, cache, lambda progress: told.append(progress.words))
     assert any("face 4" in words for words in told)
     assert not any("face 3" in words for words in told)
+    joined = bake_now(whole, cache)
+    assert all((joined[name] == parts[name]).all() for name in parts)
 
 
 def test_its_arguments_are_the_documents() -> None:

@@ -11,8 +11,8 @@ import pytest
 from renderer.core.errors import InputError
 from renderer.forest import leaf_optics
 from renderer.forest.lobe import FITS
-from renderer.forest.species import species
-from renderer.forest.tree import Tree, leaves
+from renderer.world.species import species
+from renderer.world.tree import Tree, leaves
 
 KEPT = json.loads(FITS.read_text())["species"]
 

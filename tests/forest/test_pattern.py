@@ -12,8 +12,8 @@ from renderer.forest.pattern_mips import coarser, decode, mips
 from renderer.forest.planting import MARGIN, plant
 from renderer.forest.safe_distance import REACH, safe_distance
 from renderer.forest.tiles import BOTTOM, DIAGONAL, LEFT, RHOMBI, lattice, locate
-from renderer.forest.tree import Tree
 from renderer.forest.world_scale import TILE_SIDE, VOXEL
+from renderer.world.tree import Tree
 
 ARGUMENTS = {"broadleaf": 1.0, "conifer": 0.8, "birch": 0.4, "mesh": "", "density": 1.0, "seed": 1}
 

@@ -16,7 +16,6 @@ from renderer.shells import surface_mapping
 from renderer.shells.base_mesh import BaseMesh, flat_uv, from_corners
 from renderer.shells.shell import build_shell
 from renderer.shells.surface_mapping import mapped
-from renderer.shells.surface_teapot import BODY, HANDLE, LID, SPOUT
 from renderer.shells.surfaces import (
     Mushroom,
     Plane,
@@ -31,6 +30,7 @@ from renderer.shells.surfaces import (
 )
 from renderer.world.mesh import is_watertight
 from renderer.world.mesh_normals import face_vectors, vertex_normals
+from renderer.world.teapot import BODY, HANDLE, LID, SPOUT
 
 
 def baked(surface: Any) -> BaseMesh:

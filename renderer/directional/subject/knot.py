@@ -8,11 +8,15 @@ from typing import Literal
 import numpy as np
 
 from renderer.core.params import Model, param
-from renderer.directional.subject.grids import grid_faces
+from renderer.directional.subject.grids import grid_faces, joined
 from renderer.directional.subject.solid import Solid
+from renderer.world.tree import Part
 
 ROPE = 0.46
 """Radius of the rope, where the knot's own tube has 1 and goes round the axis at 2."""
+
+ALONG, AROUND = 1500, 60
+"""Cells of a rope."""
 
 PALETTE = np.array([(0.55, 0.33, 0.13), (0.16, 0.30, 0.42), (0.62, 0.55, 0.42)])
 """Linear reflectance of the strands, in turn."""
@@ -29,26 +33,37 @@ class Knot(Model):
     twist: int = param(14, label="Twist", help="How often the rope turns in all.", cost="bake", ge=0, le=64)
 
     def solid(self) -> Solid:
-        """Its triangles."""
-        along, around = 1500, 60
+        """Its triangles; of turns and loops with a common divisor, as many ropes as that is."""
+        ropes = math.gcd(self.turns, self.loops)
+        parts, colours = [], []
+        for rope in range(ropes):
+            part, worn = self._rope(self.turns // ropes, self.loops // ropes, 2 * math.pi * rope / ropes, ropes)
+            parts.append(part)
+            colours.append(worn)
+        vertices, faces = joined(parts)
+        return Solid(vertices, faces, np.concatenate(colours))
+
+    def _rope(self, turns: int, loops: int, lead: float, ropes: int) -> tuple[Part, np.ndarray]:
+        """Vertices and faces of one rope, whose loops are `lead` [rad] ahead; colours of the faces."""
+        along, around = ALONG // ropes, AROUND // self.strands * self.strands
         t = 2 * math.pi * np.arange(along) / along
-        ring = 2 + np.cos(self.loops * t)
-        curve = np.stack([ring * np.cos(self.turns * t), ring * np.sin(self.turns * t), np.sin(self.loops * t)], axis=1)
+        ring = 2 + np.cos(loops * t + lead)
+        core = 2 * np.stack([np.cos(turns * t), np.sin(turns * t), 0 * t], axis=1)
+        curve = ring[:, None] * core / 2 + np.stack([0 * t, 0 * t, np.sin(loops * t + lead)], axis=1)
         ahead = _unit(np.roll(curve, -1, axis=0) - np.roll(curve, 1, axis=0))
-        out = _unit(curve - np.stack([2 * np.cos(self.turns * t), 2 * np.sin(self.turns * t), 0 * t], axis=1))
-        aside = _unit(np.cross(ahead, out))
+        aside = _unit(np.cross(ahead, curve - core))
         out = np.cross(aside, ahead)
-        angle = 2 * math.pi * np.arange(around) / around
-        phase = self.strands * angle + self.strands * self.twist * t[:, None] / math.gcd(self.turns, self.loops)
-        radius = ROPE * (0.8 + 0.2 * np.sqrt(np.abs(np.cos(phase / 2))))
-        fibres = 1 + 0.012 * np.sin(7 * phase + 5 * angle)
-        section = np.cos(angle)[:, None] * out[:, None] + np.sin(angle)[:, None] * aside[:, None]
-        vertices = (curve[:, None] + (radius * fibres)[..., None] * section).reshape(-1, 3)
+        # The grid turns with the strands, so that they end along its lines.
+        phase = 2 * math.pi * self.strands * (np.arange(around) + 0.5) / around
+        angle = phase / self.strands - -(-self.twist // ropes) * t[:, None]
+        fibres = 0.01 * np.sin(4 * phase + 260 // ropes * t[:, None])
+        radius = ROPE * (0.78 + 0.22 * np.sqrt(np.abs(np.sin(phase / 2)))) * (1 + fibres)
+        section = np.cos(angle)[..., None] * out[:, None] + np.sin(angle)[..., None] * aside[:, None]
+        vertices = (curve[:, None] + radius[..., None] * section).reshape(-1, 3)
         faces = grid_faces(along, around, around=True, along=True)
-        strand = np.floor(phase / (2 * math.pi) + 0.5).astype(int).reshape(-1) % min(self.strands, len(PALETTE))
-        worn = 0.75 + 0.25 * (radius / ROPE).reshape(-1) ** 6
-        colour = PALETTE[strand] * worn[:, None]
-        return Solid(vertices, faces, colour[faces[:, 0]])
+        column = np.tile(np.repeat(np.arange(around), 2), along)
+        strand = (column * self.strands // around) % min(self.strands, len(PALETTE))
+        return (vertices, faces), PALETTE[strand] * (0.5 + 0.5 * radius.reshape(-1)[faces].mean(axis=1) / ROPE)[:, None]
 
 
 def _unit(vectors: np.ndarray) -> np.ndarray:

@@ -9,7 +9,7 @@ import numpy as np
 from renderer.core.cache import AssetStore
 from renderer.core.errors import InputError
 from renderer.core.params import Model, param
-from renderer.directional.subject.grids import face_middles, grid_faces
+from renderer.directional.subject.grids import face_middles, grid_faces, joined
 from renderer.directional.subject.solid import Solid
 from renderer.world.mesh_normals import face_vectors
 from renderer.world.terrain import DEFAULT_CENTRE, TerrainReading, crop, default_terrain, load_terrain
@@ -19,6 +19,9 @@ NODES = 256
 
 FLOOR = 0.12
 """How thick the block is under its lowest point, as a share of its side."""
+
+WALL, UNDER = 3, 24
+"""Height of a wall's cells in widths of one, and nodes along a side of the level floor."""
 
 STEPS = (0.0, 0.25, 0.5, 0.75, 1.0)
 """Shares of the height at which the colours stand."""
@@ -74,20 +77,21 @@ def _block(height: np.ndarray) -> Solid:
     places = (np.arange(count) + 0.5) / count - 0.5
     x, y = np.meshgrid(places, places)
     top = np.stack([x, y, height], axis=-1).reshape(-1, 3)
-    faces = grid_faces(count, count)
     number = np.arange(count * count).reshape(count, count)
-    rim = np.concatenate([number[0, :-1], number[:-1, -1], number[-1, :0:-1], number[:0:-1, 0]])
-    low, step = -FLOOR, 8
-    rings = 1 + int(np.ceil((FLOOR + height.max()) * count / step))
-    share = np.arange(1, rings + 1)[:, None, None] / rings
-    walls = np.concatenate([top[rim][None], top[rim] * [1, 1, 0] + (top[rim][:, 2] * (1 - share[..., 0]))[..., None]
-                            * [0, 0, 1] + low * share * [0, 0, 1]])
-    sides = grid_faces(len(walls), len(rim), around=True)[:, ::-1] + len(top)
-    bottom = top[::1] * [1, 1, 0] + [0, 0, low]
-    under = grid_faces(count, count)[:, ::-1] + len(top) + walls.reshape(-1, 3).shape[0]
-    vertices = np.concatenate([top, walls.reshape(-1, 3), bottom])
-    colour = np.concatenate([_ground(top, faces), _strata(vertices, sides), np.repeat(CUT[None], len(under), 0)])
-    return Solid(vertices, np.concatenate([faces, sides, under]), colour)
+    rim = top[np.concatenate([number[0, :-1], number[:-1, -1], number[-1, :0:-1], number[:0:-1, 0]])]
+    rings = 1 + int(np.ceil((FLOOR + height.max()) * count / WALL))
+    foot = rim * [1, 1, 0] - [0, 0, FLOOR]
+    walls = rim + (foot - rim) * (np.arange(rings + 1) / rings)[:, None, None]
+    across = np.linspace(places[0], places[-1], UNDER)
+    x, y = np.meshgrid(across, across)
+    parts = [
+        (top, grid_faces(count, count)),
+        (walls.reshape(-1, 3), grid_faces(rings + 1, len(rim), around=True)[:, ::-1]),
+        (np.stack([x, y, 0 * x - FLOOR], axis=-1).reshape(-1, 3), grid_faces(UNDER, UNDER)[:, ::-1]),
+    ]
+    vertices, faces = joined(parts)
+    under = np.repeat(CUT[None], len(parts[2][1]), axis=0)
+    return Solid(vertices, faces, np.concatenate([_ground(*parts[0]), _strata(*parts[1]), under]))
 
 
 def _ground(vertices: np.ndarray, faces: np.ndarray) -> np.ndarray:

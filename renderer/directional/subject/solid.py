@@ -55,45 +55,49 @@ class Solid:
 
 def compact(solid: Solid) -> Solid:
     """The same surface without faces of no area, its long thin triangles cut across."""
-    vectors = face_vectors(solid.vertices, solid.faces)
-    whole = np.linalg.norm(vectors, axis=1) > 0
-    vertices, faces, normals = solid.vertices, solid.faces[whole], solid.shaded()[whole]
-    source = np.flatnonzero(whole)
-    used = vertices[faces.ravel()]
+    used = solid.vertices[solid.faces.ravel()]
     finest = float(np.linalg.norm(np.ptp(used, axis=0))) / FINEST
+    area = np.linalg.norm(face_vectors(solid.vertices, solid.faces), axis=1)
+    vertices, source = solid.vertices, np.flatnonzero(area > 0)
+    faces, normals = solid.faces[source], solid.shaded()[source]
+    done: list[tuple[np.ndarray, np.ndarray, np.ndarray]] = []
     for _ in range(ROUNDS):
         corners = vertices[faces]
         sides = np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2)
-        longest = sides.argmax(axis=1)
         length = sides.max(axis=1)
         height = np.linalg.norm(face_vectors(vertices, faces), axis=1) / length
-        thin = np.flatnonzero((length > FLATTEST * height) & (length > finest))
-        if not len(thin):
+        thin = (length > FLATTEST * height) & (length > finest)
+        done.append((faces[~thin], normals[~thin], source[~thin]))
+        if not thin.any():
             break
-        vertices, faces, normals, source = _halved(vertices, faces, normals, source, thin, longest[thin])
+        vertices, faces, normals = _halved(vertices, faces[thin], normals[thin], sides[thin].argmax(axis=1))
+        source = np.concatenate([source[thin]] * 2)
+    else:
+        done.append((faces, normals, source))
+    faces, normals, source = (np.concatenate(parts) for parts in zip(*done))
+    # Parts of a face stand together, as neighbours of the whole did: neighbouring points have neighbouring numbers.
+    order = np.argsort(source, kind="stable")
+    faces, normals, source = faces[order], normals[order], source[order]
     return replace(solid, vertices=vertices, faces=faces.astype(np.int32), normals=normals,
                    colour=solid.colour[source], source=None if solid.source is None else solid.source[source])
 
 
 def _halved(
-    vertices: np.ndarray, faces: np.ndarray, normals: np.ndarray, source: np.ndarray, thin: np.ndarray, side: np.ndarray
-) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Faces `thin` cut from the middle of the side that begins at corner `side`: vertices, faces, normals, source."""
-    rows = np.arange(len(thin))
+    vertices: np.ndarray, faces: np.ndarray, normals: np.ndarray, side: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Faces cut from the middle of the side that begins at corner `side` (F,): vertices, first and second halves, and
+    the normals of their corners."""
+    rows = np.arange(len(faces))[:, None]
     turn = (side[:, None] + np.arange(3)) % 3
-    a, b, c = faces[thin][rows[:, None], turn].T
-    na, nb, nc = np.moveaxis(normals[thin][rows[:, None], turn], 1, 0)
+    a, b, c = faces[rows, turn].T
+    na, nb, nc = np.moveaxis(normals[rows, turn], 1, 0)
     nm = na + nb
     length = np.linalg.norm(nm, axis=1, keepdims=True)
     nm = np.where(length > 1e-9, nm / np.maximum(length, 1e-9), na)
     # The middle of a side comes out the same from both of its faces, to the last bit: a + b does not depend on order.
-    m = len(vertices) + rows
-    vertices = np.concatenate([vertices, (vertices[a] + vertices[b]) / 2])
-    faces, normals = faces.copy(), normals.copy()
-    faces[thin], normals[thin] = np.stack([a, m, c], axis=1), np.stack([na, nm, nc], axis=1)
+    m = len(vertices) + np.arange(len(faces))
     return (
-        vertices,
-        np.concatenate([faces, np.stack([m, b, c], axis=1)]),
-        np.concatenate([normals, np.stack([nm, nb, nc], axis=1)]),
-        np.concatenate([source, source[thin]]),
+        np.concatenate([vertices, (vertices[a] + vertices[b]) / 2]),
+        np.concatenate([np.stack([a, m, c], axis=1), np.stack([m, b, c], axis=1)]),
+        np.concatenate([np.stack([na, nm, nc], axis=1), np.stack([nm, nb, nc], axis=1)]),
     )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from renderer.forest.tree import GOLDEN_ANGLE, Species, Tree, join, leaves, outwards, tubes
+from renderer.world.tree import GOLDEN_ANGLE, Species, Tree, join, leaves, outwards, tubes
 
 BARK = (0.075, 0.058, 0.045)
 NEEDLES = (0.03, 0.07, 0.035)

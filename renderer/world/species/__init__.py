@@ -6,7 +6,7 @@ import functools
 import importlib
 import pkgutil
 
-from renderer.forest.tree import Species
+from renderer.world.tree import Species
 
 
 @functools.cache

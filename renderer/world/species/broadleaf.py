@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.spatial import cKDTree
 
-from renderer.forest.tree import Species, Tree, join, leaves, outwards, tubes, unit
+from renderer.world.tree import Species, Tree, join, leaves, outwards, tubes, unit
 
 BARK = (0.11, 0.085, 0.062)
 GREEN = (0.06, 0.12, 0.03)

@@ -9,9 +9,9 @@ import trimesh
 from renderer.core.cache import AssetStore
 from renderer.core.errors import AssetError, InputError, LimitError
 from renderer.forest.nursery import MAX_FACES, OWN_HEIGHT, OWN_REACH, nursery, own_tree
-from renderer.forest.species import species
-from renderer.forest.tree import Tree, leaves, tubes
 from renderer.world.mesh import Mesh
+from renderer.world.species import species
+from renderer.world.tree import Tree, leaves, tubes
 
 NAMES = ["birch", "broadleaf", "conifer"]
 

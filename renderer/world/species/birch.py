@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from renderer.forest.tree import GOLDEN_ANGLE, Species, Tree, join, leaves, outwards, tubes, unit
+from renderer.world.tree import GOLDEN_ANGLE, Species, Tree, join, leaves, outwards, tubes, unit
 
 BARK = (0.42, 0.40, 0.36)
 TWIG_BARK = (0.10, 0.07, 0.05)
