@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Hashable, Mapping
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 import numpy as np
@@ -20,6 +20,14 @@ if TYPE_CHECKING:
 
 HALF_FROM = 400_000
 """Values from which a table is held in half precision, to stay in the caches."""
+
+
+def table_textures(gl: GL, baked: Mapping[str, Arrays], storage: str) -> dict[str, AnyTexture]:
+    """A table and its rulers on the GPU."""
+    table = table_of(baked["brdf"])
+    half = storage == "half" or (storage == "auto" and table.values.size // 3 >= HALF_FROM)
+    texels = plane(table, np.float16 if half else np.float32)
+    return {"table": gl.texture2d(texels, "nearest"), "rulers": gl.texture2d(rulers(table), "nearest")}
 
 
 class MeasuredBrdf(DirectionalTechnique):
@@ -50,9 +58,10 @@ class MeasuredBrdf(DirectionalTechnique):
         """How the table lies in its texture, and where the lamp is."""
         return table_uniforms(table_of(baked["brdf"])) | lamp_values(state.lamp, baked)
 
+    def textures_key(self, baked_keys: Mapping[str, str]) -> Hashable:
+        """The table, and how it is kept."""
+        return baked_keys["brdf"], self.storage
+
     def textures_of(self, gl: GL, baked: Mapping[str, Arrays]) -> dict[str, AnyTexture]:
         """The table and its rulers."""
-        table = table_of(baked["brdf"])
-        half = self.storage == "half" or (self.storage == "auto" and table.values.size // 3 >= HALF_FROM)
-        texels = plane(table, np.float16 if half else np.float32)
-        return {"table": gl.texture2d(texels, "nearest"), "rulers": gl.texture2d(rulers(table), "nearest")}
+        return table_textures(gl, baked, self.storage)

@@ -8,14 +8,20 @@ from typing import Any
 
 import numpy as np
 
-from renderer.core.params import defines, uniform_declarations, uniforms
+from renderer.core.baking import bake_now
+from renderer.core.cache import Cache
+from renderer.core.params import bake_arguments, defines, uniform_declarations, uniforms
 from renderer.core.registry import glsl_file
+from renderer.core.technique import Arrays, Bake
 from renderer.directional.frames import frames
 from renderer.directional.lamp import Lamp
 from renderer.directional.technique import DirectionalTechnique
 from renderer.gl.context import GL
 from renderer.gl.probe import probe
 from renderer.gl.thread import GLThread
+from renderer.world.atmosphere import Atmosphere
+from renderer.world.sky import SKY_DECLARATIONS, SkyNow, bake_sky, sky_for, sky_uniforms
+from renderer.world.sun import angles
 
 SUN = np.array([900.0, 850.0, 700.0])
 SKY = np.array([80.0, 110.0, 160.0])
@@ -41,6 +47,16 @@ BODY = """Surfel surfel = Surfel(0u, position, normal, tangent, cross(normal, ta
 result = light_radiance(surfel, to_eye);"""
 
 
+def kept(bake: Bake) -> Arrays:
+    """What a bake gives, computed once for every run."""
+    return bake_now(bake, Cache())
+
+
+def sky_tables() -> Arrays:
+    """The default sky."""
+    return kept(Bake("sky", bake_sky, bake_arguments(Atmosphere())))
+
+
 def random_directions(count: int, seed: int) -> np.ndarray:
     """Unit vectors of the upper hemisphere, even by solid angle."""
     rng = np.random.default_rng(seed)
@@ -59,16 +75,18 @@ def shaded(
     lamp: Lamp | None = None,
     positions: np.ndarray | None = None,
     openness: np.ndarray | None = None,
-    state: Any = None,
+    surroundings: Mapping[str, Any] | None = None,
 ) -> np.ndarray:
     """Radiance (N, 3) of points, as the technique's own GLSL gives it.
 
     Args:
         normals, to_eye, positions: (N, 3). sun: unit vector (3,). openness: (N,).
+        surroundings: fields of the state beside the lamp, where the technique reads some.
     """
     baked = {"visibility": {"box": np.array([[-1.0, -1, -1], [1, 1, 1]])}, **baked}
     lamp = lamp or Lamp()
-    state = state or SimpleNamespace(lamp=lamp)
+    state = SimpleNamespace(lamp=lamp, **(surroundings or {}))
+    sky = getattr(getattr(state, "environment", None), "kind", "") == "sky"
     count = len(normals)
     inputs = {
         "normal": normals,
@@ -78,32 +96,43 @@ def shaded(
         "openness": np.ones(count) if openness is None else openness,
     }
 
-    def run(gl: GL) -> np.ndarray:
-        made = technique.textures_of(gl, baked)
-        try:
-            return probe(
-                gl,
-                [*technique.includes, glsl_file("directional", "light", technique.kind)],
-                BODY,
-                {name: values.astype(np.float32) for name, values in inputs.items()},
-                3,
-                uniforms={
-                    **uniforms(technique, "light"),
-                    **uniforms(lamp, "lamp"),
-                    **technique.constants(state, baked),
-                    "sun_direction": sun,
-                    "sun_irradiance": SUN,
-                    "sky_irradiance": SKY,
-                },
-                textures={f"light_{name}": texture for name, texture in made.items()},
-                declarations="\n".join(declarations(technique)),
-                defines={**defines(technique, "light"), **defines(lamp, "lamp")},
-            )
-        finally:
-            for texture in made.values():
-                texture.release()
+    live = {**uniforms(technique, "light"), **uniforms(lamp, "lamp"), **technique.constants(state, baked)}
+    values = {**live, "sun_direction": sun, "sun_irradiance": SUN, "sky_irradiance": SKY}
+    narrow = {name: array.astype(np.float32) for name, array in inputs.items()}
+    now = sky_for(baked["sky"], angles(state.sun)[1]) if sky else None
+    if now is not None:
+        values |= sky_uniforms(now, sun)
+    return np.asarray(thread.call(_probed, technique, lamp, baked, narrow, values, now), np.float64)
 
-    return np.asarray(thread.call(run), np.float64)
+
+def _probed(
+    gl: GL,
+    technique: DirectionalTechnique,
+    lamp: Lamp,
+    baked: Mapping[str, Any],
+    inputs: Mapping[str, np.ndarray],
+    values: Mapping[str, Any],
+    now: SkyNow | None,
+) -> np.ndarray:
+    made = {f"light_{name}": texture for name, texture in technique.textures_of(gl, baked).items()}
+    if now is not None:
+        made["sky_view"] = gl.texture2d(now.view)
+    own = [*technique.includes, glsl_file("directional", "light", technique.kind)]
+    try:
+        return probe(
+            gl,
+            own if now is None else ["lib/sky.glsl", *own],
+            BODY,
+            inputs,
+            3,
+            uniforms=values,
+            textures=made,
+            declarations="\n".join([*declarations(technique), "" if now is None else SKY_DECLARATIONS]),
+            defines={**defines(technique, "light"), **defines(lamp, "lamp"), "ENVIRONMENT_SKY": int(now is not None)},
+        )
+    finally:
+        for texture in made.values():
+            texture.release()
 
 
 def declarations(technique: DirectionalTechnique) -> list[str]:
