@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from renderer.core.technique import Arrays
-from renderer.directional.brdf.sources import table_of
+from renderer.directional.brdf.materials import table_of
 from renderer.directional.environments import image_of, rotation_of
 from renderer.world.sky import sky_for
 from renderer.world.sun import angles, direction

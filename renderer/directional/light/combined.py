@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 from renderer.core.params import param
 from renderer.core.technique import Arrays, Bake
+from renderer.directional.brdf.materials import brdf_bake, table_of
 from renderer.directional.brdf.resident import DECLARATIONS as TABLE_DECLARATIONS
 from renderer.directional.brdf.resident import table_uniforms
-from renderer.directional.brdf.sources import Metal, Source, brdf_bake, table_of
 from renderer.directional.environment_light import SHARPEST, level_of
 from renderer.directional.environments import DECLARATIONS, environment_bake
 from renderer.directional.lamp import LAMP_DECLARATIONS, lamp_values
@@ -50,7 +50,6 @@ class Combined(DirectionalTechnique):
     surface: Literal["phong", "measured"] = param(
         "measured", label="Surface", help="How sun and lamp are returned.", cost="build"
     )
-    table: Source = param(Metal(), label="Table", help="What a measured surface is of.", cost="bake")
     storage: Literal["auto", "half", "float"] = param(
         "auto", label="Storage", help="Type of the table's numbers on the GPU; auto halves large tables.", cost="host"
     )
@@ -83,8 +82,8 @@ class Combined(DirectionalTechnique):
     )
 
     def bakes(self, state: Any) -> list[Bake]:
-        """The table, where it is used, and the surroundings' picture."""
-        table = [brdf_bake(self.table)] if self.surface == "measured" else []
+        """The material's table, where it is used, and the surroundings' picture."""
+        table = [brdf_bake(state.material)] if self.surface == "measured" else []
         return [*table, *environment_bake(state.environment)]
 
     def constants(self, state: Any, baked: Mapping[str, Arrays]) -> dict[str, Any]:

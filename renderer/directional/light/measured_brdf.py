@@ -9,8 +9,8 @@ import numpy as np
 
 from renderer.core.params import param
 from renderer.core.technique import Arrays, Bake
+from renderer.directional.brdf.materials import brdf_bake, table_of
 from renderer.directional.brdf.resident import DECLARATIONS, plane, rulers, table_uniforms
-from renderer.directional.brdf.sources import Satin, Source, brdf_bake, table_of
 from renderer.directional.lamp import LAMP_DECLARATIONS, lamp_values
 from renderer.directional.technique import DirectionalTechnique
 
@@ -41,7 +41,6 @@ class MeasuredBrdf(DirectionalTechnique):
     extra_declarations: ClassVar[tuple[str, ...]] = (DECLARATIONS, LAMP_DECLARATIONS)
 
     kind: Literal["measured_brdf"] = "measured_brdf"
-    table: Source = param(Satin(), label="Table", help="What the surface is of.", cost="bake")
     storage: Literal["auto", "half", "float"] = param(
         "auto",
         label="Storage",
@@ -51,8 +50,8 @@ class MeasuredBrdf(DirectionalTechnique):
     ambient: float = param(0.3, label="Ambient", help="Share of the sky's light.", unit="ratio", ge=0, le=1)
 
     def bakes(self, state: Any) -> list[Bake]:
-        """The table."""
-        return [brdf_bake(self.table)]
+        """The material's table."""
+        return [brdf_bake(state.material)]
 
     def constants(self, state: Any, baked: Mapping[str, Arrays]) -> dict[str, Any]:
         """How the table lies in its texture, and where the lamp is."""

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from renderer.directional.brdf.sources import Matte, brdf_bake
+from renderer.directional.brdf.materials import Matte, brdf_bake
 from renderer.directional.environment_light import SHARPEST
 from renderer.directional.environments import Studio, environment_bake
 from renderer.directional.lamp import Lamp
@@ -47,11 +47,11 @@ def drawn(thread: GLThread, baked: Mapping[str, Any], technique: DirectionalTech
 
 @pytest.mark.parametrize("surface", ["phong", "measured"])
 def test_the_sum_of_its_parts(thread: GLThread, baked: Mapping[str, Any], surface: str) -> None:
-    own: dict[str, Any] = {"surface": surface, "table": Matte(), "diffuse": 0.5, "specular": 0.2, "shininess": 30.0}
+    own: dict[str, Any] = {"surface": surface, "diffuse": 0.5, "specular": 0.2, "shininess": 30.0}
     shares = {"surface_share": 0.8, "environment_share": 1.5, "matt": 0.3, "mirror": 0.4, "mirror_shininess": SHARPEST}
     whole = drawn(thread, baked, Combined(**own, **shares))
     phong = Phong(ambient=0.0, diffuse=0.5, specular=0.2, shininess=30.0)
-    lit = drawn(thread, baked, phong if surface == "phong" else MeasuredBrdf(table=Matte(), ambient=0.0))
+    lit = drawn(thread, baked, phong if surface == "phong" else MeasuredBrdf(ambient=0.0))
     around = drawn(thread, baked, EnvironmentMap(diffuse=0.3, specular=0.4))
     np.testing.assert_allclose(whole, 0.8 * lit + 1.5 * around, rtol=1e-4, atol=1e-3)
     assert lit.mean() > 1  # W m-2 sr-1
@@ -76,6 +76,6 @@ def test_the_reference_is_told_of_every_kind(baked: Mapping[str, Any], lamp: Lam
 
 
 def test_without_a_table_none_is_baked() -> None:
-    state = SimpleNamespace(environment=Studio())
+    state = SimpleNamespace(environment=Studio(), material=Matte())
     assert [bake.name for bake in Combined(surface="phong").bakes(state)] == ["environment"]
     assert [bake.name for bake in Combined().bakes(state)] == ["brdf", "environment"]

@@ -9,8 +9,17 @@ import numpy as np
 import pytest
 
 from renderer.directional.brdf.lookup import lookup
+from renderer.directional.brdf.materials import (
+    AnyMaterial,
+    Matte,
+    Metal,
+    Satin,
+    Validation,
+    bake_brdf,
+    brdf_bake,
+    table_of,
+)
 from renderer.directional.brdf.resident import DECLARATIONS, table_uniforms
-from renderer.directional.brdf.sources import AnySource, Matte, Metal, Satin, Validation, bake_brdf, brdf_bake, table_of
 from renderer.directional.lamp import Lamp
 from renderer.directional.light.measured_brdf import MeasuredBrdf
 from renderer.gl.context import GL
@@ -23,7 +32,7 @@ FILE = "directional/brdf_table.glsl"
 NORMAL = np.array([0.0, 0.0, 1.0])
 
 
-def baked(source: AnySource) -> Mapping[str, Any]:
+def baked(source: AnyMaterial) -> Mapping[str, Any]:
     return {"brdf": bake_brdf(brdf_bake(source).arguments, {}, lambda share, words: None)}
 
 
@@ -81,7 +90,7 @@ def test_it_colours_points_of_all_orientations(thread: GLThread, azimuths: str) 
 
 
 @pytest.mark.parametrize("source", [Validation(azimuths="both"), Validation(), Satin(), Matte(), Metal()], ids=repr)
-def test_glsl_equals_its_twin(thread: GLThread, source: AnySource) -> None:
+def test_glsl_equals_its_twin(thread: GLThread, source: AnyMaterial) -> None:
     arrays = baked(source)
     found, view, light = drawn(thread, arrays)
     table = table_of(arrays["brdf"])
@@ -150,7 +159,7 @@ def test_the_horizon_clamps() -> None:
 
 
 def test_light_from_below_gives_nothing_and_the_ambient_term_stays(thread: GLThread) -> None:
-    technique = MeasuredBrdf(table=Matte(), ambient=0.5)
+    technique = MeasuredBrdf(ambient=0.5)
     normals, to_eye = np.array([[0.0, 0, 1], [0, 1, 0]]), np.array([[0.0, 0, 1], [0, 1, 0]])
     found = shaded(thread, technique, baked(Matte()), normals, to_eye, np.array([0.0, -0.6, -0.8]),
                    openness=np.array([1.0, 0.5]))
@@ -160,7 +169,7 @@ def test_light_from_below_gives_nothing_and_the_ambient_term_stays(thread: GLThr
 
 def test_a_lamp_adds_its_own(thread: GLThread) -> None:
     """With the lamp where the sun is, as far off as makes its light the sun's."""
-    technique, to_eye = MeasuredBrdf(table=Matte(), ambient=0.0), np.array([[0.3, 0.4, 3**0.5 / 2]])
+    technique, to_eye = MeasuredBrdf(ambient=0.0), np.array([[0.3, 0.4, 3**0.5 / 2]])
     sun = np.array([0.36, -0.48, 0.8])
     lamp = Lamp(lit=True, place=tuple(10 * sun), intensity=100 * 900.0, colour=tuple(SUN / 900.0))
     alone = shaded(thread, technique, baked(Matte()), NORMAL[None], to_eye, sun)

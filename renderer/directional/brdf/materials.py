@@ -191,13 +191,13 @@ class File(Model):
         try:
             return load_brdf(AssetStore().get(self.asset.removeprefix("asset:")).path)
         except InputError as failure:
-            raise failure.at("light.table.asset") from None
+            raise failure.at("material.asset") from None
 
 
-AnySource = Validation | Satin | Matte | Metal | File
-Source = Annotated[AnySource, Field(discriminator="kind")]
+AnyMaterial = Validation | Satin | Matte | Metal | File
+Material = Annotated[AnyMaterial, Field(discriminator="kind")]
 
-_ANY: TypeAdapter[AnySource] = TypeAdapter(Source)
+_ANY: TypeAdapter[AnyMaterial] = TypeAdapter(Material)
 
 
 def sampled(
@@ -211,9 +211,9 @@ def sampled(
     return made_one_at_the_pole(BrdfTable(coordinates, nodes, values))
 
 
-def brdf_bake(source: AnySource) -> Bake:
+def brdf_bake(material: AnyMaterial) -> Bake:
     """The precomputation of a table."""
-    return Bake("brdf", bake_brdf, bake_arguments(source), seconds=2 if source.kind == "file" else 0.5)
+    return Bake("brdf", bake_brdf, bake_arguments(material), seconds=2 if material.kind == "file" else 0.5)
 
 
 def bake_brdf(
@@ -222,7 +222,7 @@ def bake_brdf(
     """A table as arrays.
 
     Args:
-        arguments: a `Source` as a document.
+        arguments: a `Material` as a document.
 
     Returns:
         `coordinates` (), the place of its name among `AXES`; `nodes_0` to `nodes_3`; `values` float32 [sr-1].
