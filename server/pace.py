@@ -9,6 +9,10 @@ from typing import Any
 from weakref import WeakKeyDictionary
 
 LOWEST_SCALE = 0.5
+"""Below it a picture looks poor: less only for as many pictures as a movement takes to look like one."""
+COARSEST_SCALE = 0.375
+SLOWEST_MS = 45.0
+"""Frame time of 22 pictures a second."""
 STEPS = 16
 """Scales are sixteenths: a renderer's targets are not made anew for every small change."""
 HEADROOM = 0.9
@@ -35,7 +39,7 @@ class ScaleController:
 
     @property
     def scale(self) -> float:
-        """Linear scale of the next moving frame, in [0.5, 1], a multiple of 1/16."""
+        """Linear scale of the next moving frame, in [0.375, 1], a multiple of 1/16."""
         return self._scale
 
     @property
@@ -52,11 +56,17 @@ class ScaleController:
         """
         self._full.append(max(cost_ms, 1e-3) / (scale * scale))
         full = statistics.median_low(self._full)
-        wanted = _step(math.sqrt(self.frame_ms / full))
+        wanted = self._holding(full)
         if wanted < self._scale:
             self._scale = wanted
         else:
-            self._scale = max(self._scale, _step(math.sqrt(HEADROOM * self.frame_ms / full)))
+            self._scale = max(self._scale, self._holding(full / HEADROOM))
+
+    def _holding(self, full: float) -> float:
+        """The scale that holds the frame time, or at least `SLOWEST_MS`, where a full picture takes `full` ms."""
+        scale = math.sqrt(self.frame_ms / full)
+        slowest = math.sqrt(max(self.frame_ms, SLOWEST_MS) / full)
+        return _step(max(scale, min(slowest, LOWEST_SCALE)))
 
     def forget(self) -> None:
         """Drop what was learnt: the canvas has another size."""
@@ -84,7 +94,7 @@ def scaled(width: int, height: int, scale: float) -> tuple[int, int]:
 
 
 def _step(scale: float) -> float:
-    return min(1.0, max(LOWEST_SCALE, math.floor(scale * STEPS) / STEPS))
+    return min(1.0, max(COARSEST_SCALE, math.floor(scale * STEPS) / STEPS))
 
 
 class Allowance:

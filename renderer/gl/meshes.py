@@ -12,6 +12,9 @@ from renderer.gl.context import GL
 from renderer.gl.program import AnyTexture, bind_textures, set_uniforms
 from renderer.gl.source import Source, assemble
 
+VERTEX_BYTES = 16
+"""A place and the triangle's number, in single precision."""
+
 
 class Triangles:
     """Triangles with a number each, drawn by `shaders/stages/mesh.vert`.
@@ -25,10 +28,16 @@ class Triangles:
     def __init__(self, gl: GL, corners: np.ndarray, owner: np.ndarray) -> None:
         self._gl = gl
         self.count = len(corners)
-        data = np.empty((len(corners), 3, 4), np.float32)
-        data[..., :3] = corners
-        data[..., 3] = owner[:, None]
-        self._buffer = gl.ctx.buffer(data.tobytes()) if len(corners) else None
+        self._buffer = gl.ctx.buffer(_packed(corners, owner)) if len(corners) else None
+
+    def write(self, first: int, corners: np.ndarray, owner: np.ndarray) -> None:
+        """Put other triangles in the places of those from number `first` on."""
+        if self._buffer is not None:
+            self._buffer.write(_packed(corners, owner), offset=first * VERTEX_BYTES * 3)
+
+    def read(self) -> bytes:
+        """What the GPU holds of them."""
+        return self._buffer.read() if self._buffer is not None else b""
 
     def draw(self, fragment: Source, textures: Mapping[str, AnyTexture], values: Mapping[str, Any]) -> None:
         """Draw them into the bound framebuffer, as the pipeline's switches are set.
@@ -53,6 +62,13 @@ class Triangles:
         if self._buffer is not None:
             self._buffer.release()
             self._buffer = None
+
+
+def _packed(corners: np.ndarray, owner: np.ndarray) -> bytes:
+    data = np.empty((len(corners), 3, 4), np.float32)
+    data[..., :3] = corners
+    data[..., 3] = owner[:, None]
+    return data.tobytes()
 
 
 def _vertex() -> Source:

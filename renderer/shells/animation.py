@@ -10,6 +10,7 @@ from pydantic import Field
 
 from renderer.core.params import Model, param
 from renderer.core.technique import Arrays
+from renderer.shells.animation_frames import KeyFrames, key_frames
 from renderer.shells.base_mesh import BaseMesh
 from renderer.shells.extrusion import Extrusion, directions
 from renderer.shells.shell import Shell, update_shell
@@ -31,6 +32,14 @@ def period(seconds: float) -> Any:
     )
 
 
+def frames() -> Any:
+    """The parameter of how many key frames planes and maps are interpolated between."""
+    return param(
+        0, label="Key frames", unit="count", cost="host", ge=0, le=64, source="Dufort 2005, section 5.3.3",
+        help="Of which planes and maps are computed once and interpolated; 0 computes them at every moment.",
+    )
+
+
 class Still(Model):
     """No motion."""
 
@@ -47,6 +56,7 @@ class NoiseMotion(Model):
     )
     size: float = param(0.8, label="Size", help="Length of its waves.", unit="m", cost="host", gt=0, le=1000)
     period: float = period(6.0)
+    frames: int = frames()
     seed: int = param(5, label="Seed", help="Of the waves.", cost="host", ge=0, le=2**31 - 1)
 
 
@@ -59,6 +69,7 @@ class Bend(Model):
         source="Barr 1984",
     )
     period: float = period(6.0)
+    frames: int = frames()
 
 
 class Twist(Model):
@@ -70,6 +81,7 @@ class Twist(Model):
         le=720, source="Barr 1984",
     )
     period: float = period(6.0)
+    frames: int = frames()
 
 
 class Bump(Model):
@@ -79,11 +91,14 @@ class Bump(Model):
     height: float = param(0.12, label="Height", help="Of its top.", unit="m", cost="host", ge=-100, le=100)
     radius: float = param(0.35, label="Radius", help="How far it reaches.", unit="m", cost="host", gt=0, le=1000)
     period: float = period(8.0)
+    frames: int = frames()
 
 
 Motion = Annotated[Still | NoiseMotion | Bend | Twist | Bump, Field(discriminator="kind")]
 
-AnyMotion = Still | NoiseMotion | Bend | Twist | Bump
+Moving = NoiseMotion | Bend | Twist | Bump
+
+AnyMotion = Still | Moving
 
 
 def deformed(base: BaseMesh, motion: AnyMotion, time: float) -> np.ndarray:
@@ -149,6 +164,7 @@ class MovingShell:
     def __init__(self, surface: Arrays, shell: Arrays, extrusion: Extrusion) -> None:
         self._base, self._extrusion = surface_of(surface), extrusion
         self._length = shell["wanted"] * shell["share"]
+        self._kept: tuple[AnyMotion, KeyFrames] | None = None
         self.shell: Shell = shell_of(shell)
 
     def move(self, motion: AnyMotion, time: float) -> np.ndarray:
@@ -156,6 +172,14 @@ class MovingShell:
         positions = positions_at(self._base, self._length, self._extrusion, motion, time)
         self.shell, changed = update_shell(self.shell, positions)
         return changed
+
+    def interpolate(self, motion: Moving, time: float) -> None:
+        """Go to a time [s] between the motion's key frames; these are computed when they are first wanted."""
+        if self._kept is None or self._kept[0] != motion:
+            times = [motion.period * number / motion.frames for number in range(motion.frames)]
+            places = [positions_at(self._base, self._length, self._extrusion, motion, then) for then in times]
+            self._kept = motion, key_frames(self.shell, places, motion.period)
+        self.shell = self._kept[1].at(time)
 
     def arrays(self, surface: Arrays, shell: Arrays) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray]]:
         """Arrays like those of the bakes, of the surface and the shell as they are now."""

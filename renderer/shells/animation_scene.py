@@ -20,17 +20,19 @@ class Moment:
         key: equal keys mean equal arrays.
         surface, shell: arrays as the bakes give them.
         changed: (N,) tetrahedra that differ from those of the moment before, or None where all may.
+        before: key of the moment before.
     """
 
     key: Hashable
     surface: Arrays
     shell: Arrays
     changed: np.ndarray | None
+    before: Hashable = None
 
 
 def moment(surface: Arrays, shell: Arrays, extrusion: Extrusion, motion: AnyMotion, time: float) -> Moment:
-    """Surface and shell at a time [s], without a memory of other times: the same to the last bit as `Animator` gives,
-    whatever it drew before.
+    """Surface and shell at a time [s], computed without a memory of other times: the same to the last bit as `Animator`
+    gives, whatever it drew before, but for what a motion's key frames err by.
 
     Args:
         surface, shell: arrays of the bakes. extrusion, motion: the document's.
@@ -56,13 +58,18 @@ class Animator:
         """Surface and shell at a time [s]; their bakes, where nothing moves."""
         if isinstance(motion, Still):
             return Moment(shell.key, surface.arrays, shell.arrays, None)
-        if self._moving is None or self._key != shell.key:
-            self._key, self._last = shell.key, None
+        kept = shell.key, motion.frames > 0
+        if self._moving is None or self._key != kept:
+            self._key, self._last = kept, None
             self._moving = MovingShell(surface.arrays, shell.arrays, extrusion)
         key = (shell.key, motion, time)
         if self._last is not None and self._last.key == key:
             return self._last
-        first = self._last is None
-        changed = self._moving.move(motion, time)
-        self._last = Moment(key, *self._moving.arrays(surface.arrays, shell.arrays), None if first else changed)
+        before, changed = self._last, None
+        if motion.frames:
+            self._moving.interpolate(motion, time)
+        else:
+            changed = self._moving.move(motion, time)
+        arrays = self._moving.arrays(surface.arrays, shell.arrays)
+        self._last = Moment(key, *arrays, changed if before else None, before.key if before else None)
         return self._last

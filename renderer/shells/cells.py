@@ -21,7 +21,8 @@ WAYS = np.array([[2, 3, 1], [0, 3, 2], [0, 1, 3], [2, 1, 0]])
 """Corners of the face opposite each corner k, counter-clockwise from outside; the last of them is (k + 1) % 4."""
 
 VERTEX = """uniform mat4 view_projection;
-uniform sampler2D shell_tets;"""
+uniform sampler2D shell_tets;
+uniform vec2 texture_slide;"""
 
 
 class Cells:

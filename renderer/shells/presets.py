@@ -26,6 +26,8 @@ def _sun(azimuth: float, elevation: float) -> dict[str, Any]:
 
 _HOLLOW = {"opaque": False}
 
+_MOVING = "Moving"
+
 PRESETS = {
     "fur": Preset(
         "Fur",
@@ -109,6 +111,36 @@ PRESETS = {
             "sun": _sun(95, 35),
         },
     ),
+    "fur_growing": Preset(
+        "Fur that grows",
+        "Hair that grows and goes as time runs: no precomputation, at twenty pictures a second and more.",
+        {
+            "camera": _camera(3.1, 150, 15),
+            "sun": _sun(205, 45),
+            "surface": {"divisions": 8, "repeat_u": 2, "repeat_v": 2},
+            "texture": {"kind": "fur", "across": 64, "strands": 13, "layers": 24},
+            "extrusion": {"thickness": 0.14},
+            "base": {"colour": [0.12, 0.07, 0.04]},
+            "shadow": {"resolution": 128},
+            "course": {"period": 8, "keys": [{"at": 0}, {"at": 1}, {"at": 4, "growth": 0.1}, {"at": 7}]},
+        },
+        _MOVING,
+    ),
+    "tube_bending": Preset(
+        "Tube that bends",
+        "Rocks on a tube that bends to and fro: moved tetrahedra alone are computed again.",
+        {
+            "surface": {"kind": "tube"},
+            "motion": {"kind": "bend", "angle": 70, "period": 6},
+            "extrusion": {"thickness": 0.12},
+            "texture": {"kind": "rocks"},
+            "base": {"colour": [0.1, 0.09, 0.08]},
+            "shadow": {"resolution": 128},
+            "camera": _camera(3.6, 160, 14),
+            "sun": _sun(95, 35),
+        },
+        _MOVING,
+    ),
     "earth_clouds": Preset(
         "Clouds over the Earth",
         "A globe under semi-transparent clouds that cast their shadow.",
@@ -119,6 +151,7 @@ PRESETS = {
             "base": {"colour": [0.05, 0.11, 0.2]},
             "camera": _camera(2.7, 160, 18),
             "sun": _sun(100, 30),
+            "course": {"period": 120, "keys": [{"at": 0}, {"at": 120, "slide_u": 1}]},
         },
     ),
     "jelly": Preset(
@@ -126,6 +159,7 @@ PRESETS = {
         "Opaque balls in red, semi-transparent jelly.",
         {
             "texture": {"kind": "jelly"},
+            "course": {"period": 8, "keys": [{"at": 0}, {"at": 4, "second": 0.1}]},
             "extrusion": {"thickness": 0.2},
             "base": {"colour": [0.5, 0.05, 0.04]},
             "camera": _camera(2.9, 150, 15),

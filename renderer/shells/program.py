@@ -33,6 +33,7 @@ uniform float matter_scale;       // 1/m, what 1 in the texture stands for
 uniform float reference_length;   // m, for which the texture's alpha is meant
 uniform vec2 normal_coding;       // factor and summand that make a normal of what is read
 uniform float filter_coarsest;    // level
+uniform vec2 texture_slide;       // of u and v over the surface
 uniform vec3 shell_size;          // of the texture's box along u, v, w: ratios count alone
 uniform vec3 sun_direction;
 uniform vec3 sun_irradiance;      // W m-2

@@ -17,13 +17,14 @@ from renderer.gl.program import AnyTexture
 from renderer.gl.resident import Resident
 from renderer.gl.source import Source
 from renderer.gl.targets import run_fullscreen
-from renderer.shells.animation_scene import Animator
+from renderer.shells.animation_scene import Animator, Moment
+from renderer.shells.course import texture_moment
 from renderer.shells.entries import Entries
+from renderer.shells.following import Following
 from renderer.shells.frame import Frame, moved
 from renderer.shells.raster import Rasters
 from renderer.shells.resident import Placed, placed, shell_objects
 from renderer.shells.texture.block import reference_length, texture_of
-from renderer.shells.texture.sources import moment_of
 from renderer.shells.textures import Uploaded, upload
 from renderer.world.camera import Orthographic, pose
 from renderer.world.sky import sky_for, sky_uniforms
@@ -46,6 +47,7 @@ class ShellsRenderer:
         self._gl = gl
         self._sky = Resident(gl, 8)
         self._animator = Animator()
+        self._following: Following | None = None
         self._shells: OrderedDict[Hashable, tuple[dict[str, Any], Placed]] = OrderedDict()
         self._textures: OrderedDict[Hashable, Uploaded] = OrderedDict()
         self.entries = Entries(gl)
@@ -66,13 +68,15 @@ class ShellsRenderer:
         now = self._animator.at(baked["surface"], baked["shell"], state.extrusion, state.motion, state.time)
         arrays |= {"surface": now.surface, "shell": now.shell}
         shell_key = (now.key, state.base.opaque)
-        objects, place = self._shell(shell_key, arrays["shell"], state)
-        texture_key, texture = self._texture(state, baked)
+        objects, place = self._shell(shell_key, now, baked["shell"], state)
+        then = texture_moment(state.texture, state.course, state.time, state.voxels.wrap == "repeat")
+        texture_key, texture = self._texture(state, baked, then.words)
         values = self._light(state, arrays) | moved(state.camera, size, place.centre) | _pixel(state, size)
         values |= {
             "picture_size": size,
             "pixel_offset": offset,
             "sample_shift": float(sample),
+            "texture_slide": then.slide,
             "buffer_white": state.accumulation.white_radiance(),
             "start_tet": holding(arrays["shell"], state.camera),
             "matter_scale": texture.scale * state.voxels.density,
@@ -92,7 +96,8 @@ class ShellsRenderer:
             "shell_normal": texture.normal,
             **self._sky_view(state, baked),
         }
-        frame = Frame(self, state, arrays, shell_key, texture_key, place, size, offset, sample, textures, values)
+        shown = (texture_key, then.slide)
+        frame = Frame(self, state, arrays, shell_key, shown, place, size, offset, sample, textures, values)
         looked, said = state.shadow.look(frame)
         textures |= looked
         values |= said
@@ -108,6 +113,9 @@ class ShellsRenderer:
         self._sky.release()
         self.entries.release()
         self.rasters.release()
+        if self._following is not None:
+            self._following.release()
+            self._following = None
         while self._shells:
             _free(self._shells.popitem()[1][0])
         while self._textures:
@@ -115,22 +123,37 @@ class ShellsRenderer:
 
     def triangles(self, shell_key: Hashable) -> Triangles:
         """Those of a shell's boundary."""
-        found: Triangles = self._shells[shell_key][0]["entries"]
+        followed = self._following if shell_key not in self._shells else None
+        found: Triangles = (followed.objects if followed else self._shells[shell_key][0])["entries"]
         return found
 
-    def _shell(self, key: Hashable, shell: Arrays, state: ShellsState) -> tuple[dict[str, Any], Placed]:
+    def _shell(
+        self, key: Hashable, now: Moment, rest: BakedArrays, state: ShellsState
+    ) -> tuple[dict[str, Any], Placed]:
+        hollow = not state.base.opaque or int(rest.arrays["counts"][0]) > 0
+        if now.key != rest.key:
+            return self._follow(now, rest, hollow)
         if key not in self._shells:
-            place = placed(shell)
-            hollow = not state.base.opaque or int(shell["counts"][0]) > 0
-            self._shells[key] = shell_objects(self._gl, shell, place, hollow), place
+            place = placed(rest.arrays)
+            self._shells[key] = shell_objects(self._gl, rest.arrays, place, hollow), place
             while len(self._shells) > SHELLS_KEPT:
                 _free(self._shells.popitem(last=False)[1][0])
         self._shells.move_to_end(key)
         return self._shells[key]
 
-    def _texture(self, state: ShellsState, baked: Baked) -> tuple[Hashable, Uploaded]:
+    def _follow(self, now: Moment, rest: BakedArrays, hollow: bool) -> tuple[dict[str, Any], Placed]:
+        """The objects of a moving shell; one is followed at a time, as the animator does."""
+        key = (rest.key, hollow)
+        if self._following is None or self._following.key != key:
+            if self._following is not None:
+                self._following.release()
+            self._following = Following(self._gl, key, rest.arrays, hollow)
+        return self._following.at(now)
+
+    def _texture(
+        self, state: ShellsState, baked: Baked, moment: Mapping[str, float]
+    ) -> tuple[Hashable, Uploaded]:
         thickness = state.extrusion.thickness
-        moment = moment_of(state.texture)
         filtered = getattr(state.filter, "levels", "")
         reading = (state.voxels.interpolation, state.voxels.wrap, state.voxels.storage)
         key = (baked["texture"].key, tuple(moment.items()), thickness, reading, filtered)

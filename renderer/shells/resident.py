@@ -72,10 +72,13 @@ def boundary(shell: Arrays, centre: np.ndarray, base: bool) -> tuple[np.ndarray,
     Returns:
         corners (F, 3, 3) [m], counter-clockwise seen from outside, and 4 tet + face (F,).
     """
-    neighbour = shell["neighbour"]
-    outside = (neighbour < 0) & (base | (neighbour != BASE))
-    tet, face = np.nonzero(outside)
-    return faces_of(shell, centre, tet, face)
+    return faces_of(shell, centre, *boundary_faces(shell["neighbour"], base))
+
+
+def boundary_faces(neighbour: np.ndarray, base: bool) -> tuple[np.ndarray, np.ndarray]:
+    """Tetrahedra and faces (F,) beyond which there is none; those on the base where `base` says so."""
+    tet, face = np.nonzero((neighbour < 0) & (base | (neighbour != BASE)))
+    return tet, face
 
 
 def faces_of(shell: Arrays, centre: np.ndarray, tet: np.ndarray, face: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -7,6 +7,7 @@ from typing import Any, Literal
 from renderer.core.params import param
 from renderer.core.registry import slot_union
 from renderer.shells.animation import Motion, Still
+from renderer.shells.course import Course
 from renderer.shells.extrusion import Extrusion
 from renderer.shells.surfaces import Sphere, Surface
 from renderer.shells.texture.fur import Fur
@@ -52,6 +53,9 @@ class ShellsState(SceneState):
     extrusion: Extrusion = param(Extrusion(), label="Shell", help="How the shell rises from the surface.")
     motion: Motion = param(Still(), label="Motion", help="How the surface moves as time runs.")
     texture: Texture = param(Fur(), label="Texture", help="What fills the shell.", cost="bake")
+    course: Course = param(
+        Course(), label="Key frames", help="How the texture changes as time runs.", cost="host"
+    )
     voxels: Voxels = param(Voxels(), label="Voxels", help="How the texture is read.")
     base: Base = param(Base(), label="Base", help="The surface under the shell.")
     air: Atmosphere = param(Atmosphere(), label="Air", help="What sun and sky shine through.", cost="bake")

@@ -9,8 +9,8 @@ import numpy as np
 
 from renderer.core.technique import Arrays
 from renderer.shells.animation_scene import moment
+from renderer.shells.course import texture_moment
 from renderer.shells.texture.block import texture_of
-from renderer.shells.texture.sources import moment_of
 from renderer.world.sky import sky_for, sky_radiance
 from renderer.world.sun import angles, direction
 
@@ -37,11 +37,12 @@ def world_arrays(state: ShellsState, baked: Mapping[str, Arrays]) -> dict[str, A
     now, sun = sky_for(baked["sky"], elevation), direction(state.sun)
     at = moment(baked["surface"], baked["shell"], state.extrusion, state.motion, state.time)
     shell = at.shell
-    texture = texture_of(baked["texture"], state.extrusion.thickness, **moment_of(state.texture))
+    then = texture_moment(state.texture, state.course, state.time, state.voxels.wrap == "repeat")
+    texture = texture_of(baked["texture"], state.extrusion.thickness, **then.words)
     return {
         "positions": shell["positions"],
         "tets": shell["tets"],
-        "texture": shell["texture"],
+        "texture": shell["texture"] + (*then.slide, 0.0),
         "colour": texture.colour,
         "reference_length": texture.reference_length / max(state.voxels.density, 1e-9),
         "normal": texture.normal,

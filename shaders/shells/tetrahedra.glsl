@@ -61,6 +61,7 @@ Exit tet_exit(Ray ray, int tet, float enter) {
 Segment tet_segment(Ray ray, int tet, float near, float far) {
     vec4 u = tet_texel(tet, 4), v = tet_texel(tet, 5), w = tet_texel(tet, 6);
     vec3 start = vec3(dot(u.xyz, ray.origin) + u.w, dot(v.xyz, ray.origin) + v.w, dot(w.xyz, ray.origin) + w.w);
+    start.xy += texture_slide;
     vec3 slope = vec3(dot(u.xyz, ray.direction), dot(v.xyz, ray.direction), dot(w.xyz, ray.direction));
     return Segment(start + near * slope, start + far * slope, near, far, mat3(u.xyz, v.xyz, w.xyz));
 }

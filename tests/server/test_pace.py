@@ -16,14 +16,16 @@ def settled(full_ms: float, frame_ms: float) -> list[float]:
 
 
 @pytest.mark.parametrize(
-    ("full_ms", "expected"), [(10, 1.0), (28, 1.0), (50, 0.6875), (84, 0.5625), (112, 0.5), (1000, 0.5)]
+    ("full_ms", "expected"),
+    [(10, 1.0), (28, 1.0), (50, 0.6875), (84, 0.5625), (112, 0.5), (180, 0.5), (220, 0.4375), (1000, 0.375)],
 )
 def test_the_scale_holds_the_frame_time_and_does_not_swing(full_ms: float, expected: float) -> None:
     # sqrt(28 / 50) = 0.748, with a tenth of headroom 0.71: the step below is 11/16.
     scales = settled(full_ms, 28)
     assert scales[-1] == pytest.approx(expected, abs=1 / 16 + 1e-9)
     assert len(set(scales[10:])) == 1
-    assert full_ms * scales[-1] ** 2 <= 28 or scales[-1] == 0.5
+    # Half the resolution is left only for as many pictures as make a movement: 45 ms each.
+    assert full_ms * scales[-1] ** 2 <= (28 if scales[-1] > 0.5 else 45) or scales[-1] == 0.375
 
 
 def test_one_slow_frame_costs_no_resolution_but_two_do() -> None:
@@ -32,16 +34,16 @@ def test_one_slow_frame_costs_no_resolution_but_two_do() -> None:
         controller.observe(cost, 1.0)
         assert controller.scale == 1.0
     controller.observe(900, 1.0)
-    assert controller.scale == 0.5
+    assert controller.scale == 0.375
 
 
 def test_the_scale_comes_back_when_the_scene_gets_cheap() -> None:
     controller = ScaleController(28)
     for _ in range(3):
-        controller.observe(200, 1.0)
-    assert controller.scale == 0.5
+        controller.observe(400, 1.0)
+    assert controller.scale == 0.375
     for _ in range(3):
-        controller.observe(10 * 0.25, 0.5)
+        controller.observe(10 * 0.375**2, 0.375)
     assert controller.scale == 1.0
 
 

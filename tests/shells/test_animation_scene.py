@@ -8,10 +8,14 @@ import numpy as np
 
 from renderer.core.params import bake_arguments
 from renderer.core.technique import BakedArrays
+from renderer.gl.context import GL
+from renderer.gl.thread import GLThread
 from renderer.shells.animation import MOVING, Bend, Bump, Still
 from renderer.shells.animation_scene import Animator, moment
 from renderer.shells.extrusion import Extrusion
+from renderer.shells.following import Following
 from renderer.shells.probe import crossings
+from renderer.shells.resident import tet_texels
 from renderer.shells.shell_bake import bake_shell
 from renderer.shells.surfaces import Sphere, bake_surface
 from renderer.world.camera import Orbit, rays
@@ -47,6 +51,52 @@ def test_what_changed_is_named_and_nothing_is_done_twice() -> None:
     differs = (later.shell["planes"] != first.shell["planes"]).any(axis=(1, 2))
     assert np.isin(np.flatnonzero(differs), later.changed).all()
     assert len({first.key, later.key}) == 2
+
+
+def test_between_key_frames_planes_err_by_less_the_more_there_are() -> None:
+    """At a key frame by nothing; and who goes back to moments that are computed has them to the last bit."""
+    animator = Animator()
+    exact = moment(SURFACE, SHELL, EXTRUSION, Bend(), 1.6).shell["planes"]
+    errors = []
+    for count in (8, 32):
+        at_key = animator.at(*BAKED, EXTRUSION, Bend(frames=count), 1.5)
+        np.testing.assert_allclose(
+            at_key.shell["planes"], moment(SURFACE, SHELL, EXTRUSION, Bend(), 1.5).shell["planes"], atol=1e-12
+        )
+        between = animator.at(*BAKED, EXTRUSION, Bend(frames=count), 1.6)
+        assert between.changed is None
+        errors.append(abs(between.shell["planes"] - exact).max())
+    assert 0 < 4 * errors[1] < errors[0] < 0.2
+    np.testing.assert_array_equal(animator.at(*BAKED, EXTRUSION, Bend(), 1.6).shell["planes"], exact)
+
+
+def test_the_gpu_is_written_what_moved_and_holds_what_it_would_from_scratch(thread: GLThread) -> None:
+    def check(gl: GL) -> list[int]:
+        written, animator = [], Animator()
+        kept = Following(gl, "kept", SHELL, base=True)
+        for motion, time in ((Bump(), 0.3), (Bump(), 0.4), (Bump(), 0.4), (Bump(), 0.5), (Bend(), 0.5)):
+            now = animator.at(*BAKED, EXTRUSION, motion, time)
+            objects, place = kept.at(now)
+            fresh = Following(gl, "fresh", SHELL, base=True)
+            others, _ = fresh.at(now)
+            for name in ("shell_tets", "shell_base"):
+                assert objects[name].read() == others[name].read(), name
+            assert objects["entries"].read() == others["entries"].read()
+            np.testing.assert_allclose(
+                np.frombuffer(objects["shell_tets"].read(), np.float32).reshape(-1, 8, 4)[: len(SHELL["tets"])],
+                tet_texels(now.shell, place.centre).reshape(-1, 8, 4)[: len(SHELL["tets"])], atol=1e-6,
+            )
+            fresh.release()
+            written.append(kept.written)
+        kept.release()
+        return written
+
+    cells = len(SHELL["tets"])
+    first, second, again, third, other = thread.call(check)
+    assert first == cells
+    assert 0 < second == again < 0.4 * cells, "what is shown already is not written again"
+    assert 0 < third < 0.4 * cells
+    assert other == cells
 
 
 def test_what_stands_still_is_the_bake_itself() -> None:
