@@ -138,7 +138,7 @@ def _parse(data: bytes) -> np.ndarray:
     return array
 
 
-SUFFIXES = (".csv", ".exr", ".glb", ".gltf", ".hdr", ".jpeg", ".jpg", ".json", ".npy", ".npz", ".obj", ".off", ".ply",
+SUFFIXES = (".binary", ".csv", ".exr", ".glb", ".gltf", ".hdr", ".jpeg", ".jpg", ".json", ".npy", ".npz", ".obj", ".off", ".ply",
             ".png", ".stl", ".tif", ".tiff", ".zip")
 """Endings of the files that some loader reads. Only these become part of a stored file's name."""
 

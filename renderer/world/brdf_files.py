@@ -121,10 +121,14 @@ def _npz(path: Path, limits: Limits) -> BrdfTable:
         raise AssetError("brdf", "holds values that are no reflectance", f"numbers from 0 to {MOST:g} sr-1")
     own = ("theta_o", "phi_o", "theta_l", "phi_l") if values.ndim == 5 else ("theta_o", "theta_l", "delta_phi")
     axes = [_nodes(arrays, name, count) for name, count in zip(own, values.shape)]
+    notes: tuple[str, ...] = ()
+    for axis, name in enumerate(own):
+        if not name.startswith("theta"):
+            axes[axis], values, said = _once_round(name, axes[axis], values, axis)
+            notes += said
     if values.ndim == 5:
-        table = BrdfTable("angles", (axes[0], axes[1], axes[2], axes[3]), values)
+        table = BrdfTable("angles", (axes[0], axes[1], axes[2], axes[3]), values, notes)
     else:
-        axes[2], values, notes = _whole_turn(axes[2], values)
         table = BrdfTable("difference", (axes[0], np.zeros(1), axes[1], axes[2]), values[:, None], notes)
     made = made_one_at_the_pole(table)
     changed = float(np.abs(made.values - table.values).max())
@@ -149,20 +153,25 @@ def _nodes(arrays: dict[str, np.ndarray], name: str, count: int) -> np.ndarray:
     gap = NEAREST["theta" if polar else "phi"]
     if (np.diff(nodes) < gap).any():
         raise AssetError(name, "does not ascend", f"each angle at least {gap:g} degrees above the one before")
-    if not polar and nodes[-1] - nodes[0] > 360.0 - gap and name != "delta_phi" and count > 1:
-        raise AssetError(name, "comes round to its first angle again", "less than 360 degrees from first to last")
+    if not polar and nodes[-1] - nodes[0] > 360.0 + gap / 2:
+        raise AssetError(name, "goes round more than once", "at most 360 degrees from first to last")
     return np.radians(nodes)
 
 
-def _whole_turn(nodes: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np.ndarray, tuple[str, ...]]:
-    """Differences of azimuth and values round the whole turn.
+def _once_round(
+    name: str, nodes: np.ndarray, values: np.ndarray, axis: int
+) -> tuple[np.ndarray, np.ndarray, tuple[str, ...]]:
+    """Azimuths and values round the whole turn, each once.
 
-    From 0 to 180 degrees they stand for both sides; a last node at 360 repeats the first.
+    Differences of azimuth from 0 to 180 degrees stand for both sides; a last node a turn from the first repeats it.
     """
-    if abs(nodes[0]) < 1e-9 and abs(nodes[-1] - math.pi) < 1e-9 and len(nodes) > 1:
-        nodes = np.concatenate([nodes, 2 * math.pi - nodes[-2:0:-1]])
-        values = np.concatenate([values, values[:, :, -2:0:-1]], axis=2)
-        return nodes, values, ("azimuths from 0 to 180 degrees stand for both sides",)
+    both = name == "delta_phi" and abs(nodes[0]) < 1e-9 and abs(nodes[-1] - math.pi) < 1e-9 and len(nodes) > 1
+    if both:
+        inner = np.arange(len(nodes) - 2, 0, -1)
+        nodes = np.concatenate([nodes, 2 * math.pi - nodes[inner]])
+        values = np.concatenate([values, np.take(values, inner, axis)], axis)
+        return nodes, values, ("differences of azimuth from 0 to 180 degrees stand for both sides",)
     if nodes[-1] - nodes[0] > 2 * math.pi - math.radians(NEAREST["phi"]):
-        return nodes[:-1], values[:, :, :-1], ("the last difference of azimuths repeats the first and is left out",)
+        values = np.take(values, np.arange(len(nodes) - 1), axis)
+        return nodes[:-1], values, (f"the last of {name} is the first again and is left out",)
     return nodes, values, ()

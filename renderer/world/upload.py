@@ -15,6 +15,7 @@ from typing import Any, Literal, get_args
 from renderer.core.cache import AssetStore
 from renderer.core.errors import AssetError, InputError, LimitError
 from renderer.world.arrays import npz_names
+from renderer.world.brdf_files import is_merl
 from renderer.world.image_files import MAGIC
 from renderer.world.limits import DEFAULT_LIMITS, Limits, check_file
 from renderer.world.maps import QUANTITIES
@@ -23,16 +24,16 @@ from renderer.world.mesh_formats import mesh_format
 from renderer.world.terrain_files import png_header, terrain_format
 from renderer.world.volume_stack import stack_names
 
-Kind = Literal["terrain", "mesh", "volume", "image", "map"]
+Kind = Literal["terrain", "mesh", "volume", "image", "map", "brdf"]
 """What files are read as; each kind has a loader in this package."""
 
 READ = (
     f"a terrain (GeoTIFF, 16-bit grey PNG, .npz with elevation), a mesh ({MESH_FORMATS}), a volume (.npz with rgba, or "
-    f"a .zip of PNG layers), a map (.npz with {', '.join(QUANTITIES)}), "
+    f"a .zip of PNG layers), a map (.npz with {', '.join(QUANTITIES)}), a reflectance (a MERL file, .npz with brdf), "
     "or a picture (PNG, JPEG, HDR, EXR, .npy)"
 )
 
-WANTED = f"elevation (a terrain), rgba (a volume), or a map: {', '.join(QUANTITIES)}"
+WANTED = f"elevation (a terrain), rgba (a volume), brdf (a reflectance), or a map: {', '.join(QUANTITIES)}"
 """Arrays of which an .npz must have one."""
 
 REFUSED = {
@@ -72,12 +73,16 @@ def recognise(path: Path, filename: str = "", limits: Limits = DEFAULT_LIMITS) -
         names = npz_names(path)
         if "elevation" in names or "rgba" in names:
             return "terrain" if "elevation" in names else "volume"
+        if "brdf" in names:
+            return "brdf"
         if any(name in names for name in QUANTITIES):
             return "map"
         if stack_names(path):
             return "volume"
         held = ", ".join(name[:40] for name in names[:5]) or "none"
         raise AssetError("file", f"is an archive with the arrays: {held}", WANTED)
+    if is_merl(head):
+        return "brdf"
     if any(head.startswith(magic) for magic, _ in MAGIC):
         return "image"
     if mesh_format(path.read_bytes(), filename) is not None:

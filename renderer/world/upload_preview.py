@@ -9,6 +9,8 @@ from typing import Any
 from renderer.core.errors import InputError
 from renderer.core.params import validate
 from renderer.world.arrays import npz_names
+from renderer.world.brdf import AXES
+from renderer.world.brdf_files import load_brdf
 from renderer.world.image_files import load_image
 from renderer.world.limits import Limits, Unsaid
 from renderer.world.maps import QUANTITIES, load_map
@@ -114,11 +116,26 @@ def quantity(path: Path, limits: Limits, reading: Mapping[str, Any]) -> Preview:
     }
 
 
+def brdf(path: Path, limits: Limits, reading: Mapping[str, Any]) -> Preview:
+    """Directions and range of a tabulated reflectance; it has nothing to be said."""
+    if reading:
+        raise InputError(next(iter(reading)), "is not a parameter: a reflectance leaves nothing unsaid")
+    table = load_brdf(path, limits)
+    return {
+        "coordinates": ", ".join(name for name in AXES[table.coordinates] if name),
+        "directions": [len(nodes) for nodes, name in zip(table.nodes, AXES[table.coordinates]) if name],
+        "units": "sr-1",
+        "values": {"lowest": float(table.values.min()), "highest": float(table.values.max())},
+        "notes": "; ".join(table.notes),
+    }
+
+
 PREVIEWS: dict[str, Callable[[Path, Limits, Mapping[str, Any]], Preview]] = {
     "terrain": terrain,
     "mesh": mesh,
     "volume": volume,
     "image": image,
     "map": quantity,
+    "brdf": brdf,
 }
 """One loader a kind; `upload.Kind` names the same."""
