@@ -124,8 +124,8 @@ def _npz(path: Path, limits: Limits) -> BrdfTable:
     notes: tuple[str, ...] = ()
     for axis, name in enumerate(own):
         if not name.startswith("theta"):
-            axes[axis], values, said = _once_round(name, axes[axis], values, axis)
-            notes += said
+            axes[axis], values, words = _once_round(name, axes[axis], values, axis)
+            notes += words
     if values.ndim == 5:
         table = BrdfTable("angles", (axes[0], axes[1], axes[2], axes[3]), values, notes)
     else:

@@ -1,0 +1,8 @@
+"""What the directional textures let be measured."""
+
+from __future__ import annotations
+
+from renderer.core.quantity import Quantity
+from renderer.directional.measured_reflectance import REFLECTANCE
+
+QUANTITIES: dict[str, Quantity] = {"reflectance": REFLECTANCE}
