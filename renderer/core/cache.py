@@ -138,8 +138,8 @@ def _parse(data: bytes) -> np.ndarray:
     return array
 
 
-SUFFIXES = (".binary", ".csv", ".exr", ".glb", ".gltf", ".hdr", ".jpeg", ".jpg", ".json", ".npy", ".npz", ".obj",
-            ".off", ".ply", ".png", ".stl", ".tif", ".tiff", ".zip")
+SUFFIXES = (".binary", ".csv", ".exr", ".glb", ".gltf", ".hdr", ".jpeg", ".jpg", ".json", ".las", ".laz", ".npy",
+            ".npz", ".obj", ".off", ".ply", ".png", ".stl", ".tif", ".tiff", ".zip")
 """Endings of the files that some loader reads. Only these become part of a stored file's name."""
 
 

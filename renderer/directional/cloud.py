@@ -15,6 +15,7 @@ from scipy.spatial import cKDTree
 
 from renderer.core.params import Model, bake_arguments, param
 from renderer.core.technique import Arrays, Bake
+from renderer.directional.morton import BITS, morton
 from renderer.world.mesh_normals import face_vectors
 
 GOLDEN = (np.sqrt(5) - 1) / 2
@@ -59,6 +60,8 @@ def bake_cloud(
         the back.
     """
     subject = inputs["subject"]
+    if "source" in subject:
+        return _given(subject)
     vertices, faces, two_sided = subject["vertices"], subject["faces"], bool(subject["two_sided"])
     vectors = face_vectors(vertices, faces)
     area = np.linalg.norm(vectors, axis=1) / 2
@@ -85,18 +88,44 @@ def bake_cloud(
     progress(0.8, "spreading points")
     made = {"position": position, "normal": normal, "colour": _mean_colours(subject["colour"], area, first_own, own,
                                                                             counts)}
+    return _both_sides(made, triangle, first, two_sided) | {"spacing": np.asarray(np.sqrt(share)), "cuts": cuts}
+
+
+def _given(subject: Arrays) -> dict[str, np.ndarray]:
+    """The points of a user's cloud, as `bake_cloud` gives them: each has some faces, which surround it evenly."""
+    source, faces = subject["source"], subject["faces"]
+    count = int(source.max()) + 1
+    vectors = face_vectors(subject["vertices"], faces)
+    area = np.linalg.norm(vectors, axis=1)
+    weight = np.bincount(source, area, count)
+
+    def mean(values: np.ndarray) -> np.ndarray:
+        return np.stack([np.bincount(source, area * values[:, k], count) for k in range(3)], axis=1) / weight[:, None]
+
+    normal = mean(subject["normals"].mean(axis=1))
+    made = {"position": mean(subject["vertices"][faces].mean(axis=1)), "colour": mean(subject["colour"]),
+            "normal": normal / np.linalg.norm(normal, axis=1, keepdims=True)}
+    triangle = np.zeros(count, np.int64)
+    triangle[source[::-1]] = np.arange(len(source))[::-1]
+    both = bool(subject["two_sided"])
+    # A point's square has twice the area that is its share, and each triangle's cross product is the square's.
+    return _both_sides(made, triangle, source, both) | {
+        "spacing": np.asarray(np.sqrt(np.median(weight) / 4)), "cuts": np.ones(len(faces), np.int32)}
+
+
+def _both_sides(
+    made: dict[str, np.ndarray], triangle: np.ndarray, first: np.ndarray, two_sided: bool
+) -> dict[str, np.ndarray]:
+    """Points with their triangles and each triangle's first point, and again for the backs of two-sided subjects."""
     both = 2 if two_sided else 1
     result = {name: np.concatenate([values] * both).astype(np.float32) for name, values in made.items()}
+    count = len(triangle)
     if two_sided:
-        result["normal"][len(position):] *= -1
-        first = np.stack([first, first + len(position)], axis=1)
-    return {
-        **result,
-        "triangle": np.concatenate([triangle] * both).astype(np.int32),
-        "spacing": np.asarray(np.sqrt(share)),
-        "cuts": cuts,
-        "first": first.reshape(len(faces), both).astype(np.int32),
-    }
+        result["normal"][count:] *= -1
+        first = np.stack([first, first + count], axis=1)
+    result["triangle"] = np.concatenate([triangle] * both).astype(np.int32)
+    result["first"] = first.reshape(-1, both).astype(np.int32)
+    return result
 
 
 def _cuts(area: np.ndarray, share: float) -> np.ndarray:
@@ -141,13 +170,7 @@ def _curve(middle: np.ndarray, vectors: np.ndarray, share: float) -> np.ndarray:
     """Places (F,) int64 of triangles along Morton's curve, those that look to one side of a box after another."""
     side = np.abs(vectors).argmax(axis=1)
     side = 2 * side + (np.take_along_axis(vectors, side[:, None], axis=1)[:, 0] > 0)
-    cell = np.sqrt(share) / 4
-    at = np.minimum((middle - middle.min(axis=0)) / cell, (1 << 19) - 1).astype(np.int64)
-    code = np.zeros(len(middle), np.int64)
-    for bit in range(19):
-        for axis in range(3):
-            code |= (at[:, axis] >> bit & 1) << (3 * bit + axis)
-    return np.asarray(side.astype(np.int64) << 57 | code)
+    return np.asarray(side.astype(np.int64) << 3 * BITS | morton(middle, np.sqrt(share) / 4))
 
 
 def _middles(place: np.ndarray, cuts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

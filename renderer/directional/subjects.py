@@ -8,19 +8,22 @@ from typing import Annotated, Any
 import numpy as np
 from pydantic import Field, TypeAdapter
 
+from renderer.core.errors import InputError
 from renderer.core.params import bake_arguments
 from renderer.core.technique import Arrays, Bake
 from renderer.directional.subject.basket import Basket
 from renderer.directional.subject.dragon import Dragon
 from renderer.directional.subject.knot import Knot
 from renderer.directional.subject.mesh import OwnMesh
+from renderer.directional.subject.points import OwnPoints
 from renderer.directional.subject.relief import Relief
 from renderer.directional.subject.rock import Rock
 from renderer.directional.subject.solid import compact
 from renderer.directional.subject.teapot import Teapot
 from renderer.directional.subject.tree import Tree
+from renderer.world.mesh import MAX_COORDINATE
 
-AnySubject = Dragon | Teapot | Basket | Knot | Rock | Tree | Relief | OwnMesh
+AnySubject = Dragon | Teapot | Basket | Knot | Rock | Tree | Relief | OwnMesh | OwnPoints
 
 Subject = Annotated[AnySubject, Field(discriminator="kind")]
 
@@ -48,8 +51,12 @@ def bake_subject(
     """
     progress(0.1, "making the subject")
     subject = _SUBJECTS.validate_python(arguments)
-    solid = compact(subject.solid().stood(subject.size))
+    made_of = subject.solid(progress) if isinstance(subject, OwnPoints) else subject.solid()
+    solid = compact(made_of.stood(subject.size))
     vertices = np.ascontiguousarray(solid.vertices, np.float64)
+    if np.abs(vertices).max() > MAX_COORDINATE:
+        raise InputError("subject.size", f"of 0 leaves points up to {np.abs(vertices).max():g} m from the origin",
+                         f"at most {MAX_COORDINATE:g} m, or a size above 0")
     made: dict[str, np.ndarray] = {
         "vertices": vertices,
         "faces": np.ascontiguousarray(solid.faces, np.int32),

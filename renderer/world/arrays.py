@@ -96,6 +96,12 @@ def read_npz(path: Path, wanted: Collection[str], max_bytes: int) -> dict[str, n
     return result
 
 
+def read_npy(path: Path, name: str, max_bytes: int) -> np.ndarray:
+    """The array in the .npy file at `path`; `name` and the errors as in `read_npz`."""
+    with path.open("rb") as stream:
+        return _read_array(stream, name, max_bytes)
+
+
 def _read_array(stream: IO[bytes], name: str, max_bytes: int) -> np.ndarray:
     """One array of the archive: its header first, then exactly the bytes that the header promises."""
     try:

@@ -33,6 +33,9 @@ class Limits(Model):
         cost="host",
         ge=3,
     )
+    points: int = param(
+        8_000_000, label="Points", help="Most points of a cloud.", unit="count", cost="host", ge=16
+    )
     voxels: int = param(64_000_000, label="Voxels", help="Most voxels of a volume.", unit="count", cost="host", ge=1)
     brdf_values: int = param(
         4_000_000,

@@ -21,23 +21,25 @@ from renderer.world.limits import DEFAULT_LIMITS, Limits, check_file
 from renderer.world.maps import QUANTITIES
 from renderer.world.mesh_formats import FORMATS as MESH_FORMATS
 from renderer.world.mesh_formats import mesh_format
+from renderer.world.points import FORMATS as POINTS_FORMATS
+from renderer.world.points_files import points_format
 from renderer.world.terrain_files import png_header, terrain_format
 from renderer.world.volume_stack import stack_names
 
-Kind = Literal["terrain", "mesh", "volume", "image", "map", "brdf"]
+Kind = Literal["terrain", "mesh", "volume", "image", "map", "brdf", "points"]
 """What files are read as; each kind has a loader in this package."""
 
 READ = (
     f"a terrain (GeoTIFF, 16-bit grey PNG, .npz with elevation), a mesh ({MESH_FORMATS}), a volume (.npz with rgba, or "
     f"a .zip of PNG layers), a map (.npz with {', '.join(QUANTITIES)}), a reflectance (a MERL file, .npz with brdf), "
-    "or a picture (PNG, JPEG, HDR, EXR, .npy)"
+    f"a cloud of points ({POINTS_FORMATS}), or a picture (PNG, JPEG, HDR, EXR, .npy)"
 )
 
-WANTED = f"elevation (a terrain), rgba (a volume), brdf (a reflectance), or a map: {', '.join(QUANTITIES)}"
+WANTED = ("elevation (a terrain), rgba (a volume), brdf (a reflectance), position (points), or a map: "
+          f"{', '.join(QUANTITIES)}")
 """Arrays of which an .npz must have one."""
 
 REFUSED = {
-    b"LASF": "is a LAS point cloud, for which there is no loader",
     b"%PDF": "is a PDF document",
     b"\x1f\x8b": "is a gzip archive: unpack it first",
     b"\x28\xb5\x2f\xfd": "is a zstd archive: unpack it first",
@@ -79,10 +81,14 @@ def recognise(path: Path, filename: str = "", limits: Limits = DEFAULT_LIMITS) -
             return "map"
         if stack_names(path):
             return "volume"
+        if "position" in names:
+            return "points"
         held = ", ".join(name[:40] for name in names[:5]) or "none"
         raise AssetError("file", f"is an archive with the arrays: {held}", WANTED)
     if is_merl(head):
         return "brdf"
+    if points_format(path) is not None:
+        return "points"
     if any(head.startswith(magic) for magic, _ in MAGIC):
         return "image"
     if mesh_format(path.read_bytes(), filename) is not None:
@@ -100,7 +106,7 @@ def check_in_worker(
         path: the file.
         kind: one of `Kind`.
         limits: bounds on the file and on the process.
-        reading: fields of the kind's reading (TerrainReading, MeshReading, VolumeReading) that the file leaves unsaid.
+        reading: fields of the kind's reading (TerrainReading, MeshReading, ...) that the file leaves unsaid.
 
     Returns:
         a preview in JSON values: format, sizes with their units, counts, what is still to be said, and notes.

@@ -6,6 +6,8 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from renderer.core.errors import InputError
 from renderer.core.params import validate
 from renderer.world.arrays import npz_names
@@ -15,6 +17,7 @@ from renderer.world.image_files import load_image
 from renderer.world.limits import Limits, Unsaid
 from renderer.world.maps import QUANTITIES, load_map
 from renderer.world.mesh import MeshReading, load_mesh
+from renderer.world.points import PointsReading, load_points
 from renderer.world.terrain import TerrainReading, load_terrain
 from renderer.world.volume import VolumeReading, load_volume
 
@@ -130,6 +133,20 @@ def brdf(path: Path, limits: Limits, reading: Mapping[str, Any]) -> Preview:
     }
 
 
+def points(path: Path, limits: Limits, reading: Mapping[str, Any]) -> Preview:
+    """Count and extent of a cloud, and what its points have beside a place."""
+    cloud = load_points(path, limits, validate(PointsReading, dict(reading)))
+    return {
+        "points": len(cloud.position),
+        "units": "m",
+        "extent": [float(length) for length in np.ptp(cloud.position, axis=0)],
+        "lowest_corner": [float(value) for value in cloud.position.min(axis=0)],
+        "normals": cloud.normal is not None,
+        "colours": cloud.colour is not None,
+        "notes": "; ".join(cloud.notes),
+    }
+
+
 PREVIEWS: dict[str, Callable[[Path, Limits, Mapping[str, Any]], Preview]] = {
     "terrain": terrain,
     "mesh": mesh,
@@ -137,5 +154,6 @@ PREVIEWS: dict[str, Callable[[Path, Limits, Mapping[str, Any]], Preview]] = {
     "image": image,
     "map": quantity,
     "brdf": brdf,
+    "points": points,
 }
 """One loader a kind; `upload.Kind` names the same."""

@@ -11,6 +11,8 @@ import trimesh
 
 from renderer.core.cache import AssetStore
 from renderer.core.errors import InputError
+from renderer.directional.casting import Caster
+from renderer.directional.cloud import bake_cloud
 from renderer.directional.subject import basket, dragon, knot, relief, rock, teapot
 from renderer.directional.subject.solid import FINEST, FLATTEST, Solid, compact
 from renderer.directional.subject.surface_nets import surface_nets
@@ -139,3 +141,32 @@ def test_a_file_that_is_not_there_is_named(tmp_path, monkeypatch: pytest.MonkeyP
         with pytest.raises(InputError) as caught:
             baked({"kind": kind, "asset": "asset:" + "0" * 64})
         assert caught.value.field == "subject.asset"
+
+
+def test_points_of_ones_own_are_squares_without_gaps(tmp_path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("UMBRAGE_CACHE", str(tmp_path))
+    turn = np.arange(4000) * (np.pi * (3 - np.sqrt(5)))
+    height = 1 - (np.arange(4000) + 0.5) / 2000
+    place = np.stack([np.sqrt(1 - height**2) * np.cos(turn), np.sqrt(1 - height**2) * np.sin(turn), height], axis=1)
+    body = io.BytesIO()
+    np.savez(body, position=place + [400_000, 5_000_000, 300], colour=np.abs(place))
+    document = {"kind": "points", "asset": put(body.getvalue(), "points", "ball.npz"), "sides": "one"}
+    made = baked(document)
+    assert len(made["faces"]) == 8000
+    assert (np.bincount(made["source"]) == 2).all()
+    cloud = bake_cloud({"points": 1000}, {"subject": made}, silent)
+    assert len(cloud["position"]) == 4000
+    centre = made["box"].mean(axis=0)
+    away = (cloud["position"] - centre) / np.linalg.norm(cloud["position"] - centre, axis=1, keepdims=True)
+    assert (away * cloud["normal"]).sum(axis=1).min() > 0.98
+    assert cloud["colour"] == pytest.approx(np.abs(away), abs=0.01)
+    # Rays towards the ball meet a point near them, and never fall through.
+    eyes = centre + away * [3, 3, 3]
+    for k in range(0, 4000, 400):
+        seen = Caster(made, cloud).points(np.repeat(eyes[k : k + 1], 1, axis=0), -away[k])
+        assert np.linalg.norm(cloud["position"][seen[0]] - cloud["position"][k]) < 2 * float(cloud["spacing"])
+    with pytest.raises(InputError, match="size"):
+        baked({**document, "size": 0.0})
+    half = baked({**document, "most": 1000, "sides": "both"})
+    assert half["source"].max() == 999
+    assert bake_cloud({"points": 1000}, {"subject": half}, silent)["first"].shape == (2000, 2)
