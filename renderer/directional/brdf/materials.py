@@ -116,8 +116,11 @@ class Satin(Model):
         return models.ashikhmin_shirley(view, light, *colours, self.along, self.across)
 
     def table(self) -> BrdfTable:
-        """It, at every 10 degrees down to 80, at 85, and at every 15 degrees of azimuth."""
-        theta, phi = np.append(degrees(0, 80, 10), math.radians(85)), degrees(0, 345, 15)
+        """It, at every 10 degrees down to 80, at 85, and at every 10 degrees of azimuth.
+
+        Between nodes it errs by 1 % (median), at a low view and light across the sheen by up to a third.
+        """
+        theta, phi = np.append(degrees(0, 80, 10), math.radians(85)), degrees(0, 350, 10)
         return sampled("angles", (theta, phi, theta, phi), self.reflectance)
 
 
@@ -161,9 +164,9 @@ class Metal(Model):
         """The model itself, (..., 3) [sr-1]."""
         return models.metal(view, light, np.array(self.colour), self.roughness)
 
-    def table(self) -> BrdfTable:
-        """It, in 48 cells of the half angle, dense near the normal, 24 of the light's angle to it, 12 of its turn."""
-        root, theta, phi = ((np.arange(count) + 0.5) / count for count in (48, 24, 12))
+    def table(self, cells: tuple[int, int, int] = (48, 24, 12)) -> BrdfTable:
+        """It, in cells of the half angle, dense near the normal, of the light's angle to it and of its azimuth."""
+        root, theta, phi = ((np.arange(count) + 0.5) / count for count in cells)
         nodes = root, ONE, theta * (0.5 * math.pi), phi * math.pi
         root, _, theta_d, phi_d = np.meshgrid(*nodes, indexing="ij")
         theta_h = root**2 * (0.5 * math.pi)
