@@ -32,6 +32,7 @@ class Combined(DirectionalTechnique):
         "directional/phong_lobe.glsl",
         "directional/brdf_table.glsl",
         "directional/sources.glsl",
+        "lib/sky.glsl",
         "directional/environment_light.glsl",
     )
     textures: ClassVar[Mapping[str, str]] = {

@@ -49,7 +49,7 @@ class EnvironmentMap(DirectionalTechnique):
     title: ClassVar[str] = "Environment"
     caption: ClassVar[str] = "A mirror of the sky or of a picture, over the light that all of it sends to matt matter."
     paper: ClassVar[str] = "Blinn & Newell 1976; Ramamoorthi & Hanrahan 2001"
-    includes: ClassVar[tuple[str, ...]] = ("directional/environment_light.glsl",)
+    includes: ClassVar[tuple[str, ...]] = ("lib/sky.glsl", "directional/environment_light.glsl")
     textures: ClassVar[Mapping[str, str]] = {"environment": "sampler2D"}
     extra_declarations: ClassVar[tuple[str, ...]] = (DECLARATIONS, "uniform float light_level; // of the picture")
 

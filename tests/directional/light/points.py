@@ -121,13 +121,13 @@ def _probed(
     try:
         return probe(
             gl,
-            own if now is None else ["lib/sky.glsl", *own],
+            own,
             BODY,
             inputs,
             3,
             uniforms=values,
             textures=made,
-            declarations="\n".join([*declarations(technique), "" if now is None else SKY_DECLARATIONS]),
+            declarations="\n".join([*declarations(technique), SKY_DECLARATIONS]),
             defines={**defines(technique, "light"), **defines(lamp, "lamp"), "ENVIRONMENT_SKY": int(now is not None)},
         )
     finally:
