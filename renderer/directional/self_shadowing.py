@@ -2,21 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Hashable, Mapping
 from importlib import import_module
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from renderer.core.technique import Arrays, Bake
 from renderer.directional.codes.baking import bake_code
-from renderer.directional.hemisphere import hemisphere_of
-from renderer.directional.technique import DirectionalTechnique
+from renderer.directional.hemisphere import Hemisphere, hemisphere_of
+from renderer.directional.technique import SHADOW_CODE, DirectionalTechnique
 
-
-def _shadows_of(state: Any) -> Bake:
-    # These name every technique's bakes, and so import them.
-    bake: Bake = import_module("renderer.directional.bakes").shadows_bake(state)
-    return bake
-
+if TYPE_CHECKING:
+    from renderer.gl.context import GL
+    from renderer.gl.program import AnyTexture
 
 LAYOUT_DECLARATIONS = ("uniform int self_shadow_azimuths;", "uniform int self_shadow_elevations;")
 
@@ -27,25 +24,39 @@ class SelfShadowTechnique(DirectionalTechnique):
     extra_declarations: ClassVar[tuple[str, ...]] = LAYOUT_DECLARATIONS
     includes: ClassVar[tuple[str, ...]] = ("directional/shadow_code.glsl",)
 
-    @property
-    def code_size(self) -> int:
-        """Bytes of a point, where the code leaves a choice."""
-        return int(getattr(self, "size", 0))
-
-    @property
-    def code_name(self) -> str:
-        """The code's name, by default the technique's kind."""
-        return str(getattr(self, "kind"))  # noqa: B009 - declared by each technique
-
     def bakes(self, state: Any) -> list[Bake]:
         """The words of all points."""
         shadows = _shadows_of(state)
-        directions = int(shadows.arguments["directions"])
-        arguments = {"code": self.code_name, "size": self.code_size, "directions": directions}
-        seconds = 1 + 6e-6 * state.cloud.points
-        return [Bake("shadow_code", bake_code, arguments, (shadows,), seconds=seconds)]
+        given = self.model_dump(include={"kind", "size"})
+        arguments = {**given, "directions": int(shadows.arguments["directions"])}
+        return [Bake(SHADOW_CODE, bake_code, arguments, (shadows,), seconds=1 + 6e-6 * state.cloud.points)]
+
+    def layout(self, state: Any) -> Hemisphere:
+        """Of the masks."""
+        return hemisphere_of(int(_shadows_of(state).arguments["directions"]))
 
     def constants(self, state: Any, baked: Mapping[str, Arrays]) -> dict[str, Any]:
         """The layout of the masks."""
-        layout = hemisphere_of(int(_shadows_of(state).arguments["directions"]))
+        layout = self.layout(state)
         return {"self_shadow_azimuths": layout.azimuths, "self_shadow_elevations": layout.elevations}
+
+
+class BookTechnique(SelfShadowTechnique):
+    """A technique whose words are numbers of patterns in books."""
+
+    includes: ClassVar[tuple[str, ...]] = (*SelfShadowTechnique.includes, "directional/shadow_books.glsl")
+    textures: ClassVar[Mapping[str, str]] = {"book": "usampler2D"}
+
+    def textures_key(self, baked_keys: Mapping[str, str]) -> Hashable:
+        """The code's."""
+        return baked_keys[SHADOW_CODE]
+
+    def textures_of(self, gl: GL, baked: Mapping[str, Arrays]) -> dict[str, AnyTexture]:
+        """The books."""
+        return {"book": gl.texture2d(baked[SHADOW_CODE]["book"], filter="nearest")}
+
+
+def _shadows_of(state: Any) -> Bake:
+    # These name every technique's bakes, and so import them.
+    bake: Bake = import_module("renderer.directional.bakes").shadows_bake(state)
+    return bake

@@ -9,8 +9,13 @@ import numpy as np
 
 from renderer.core.technique import Arrays
 from renderer.directional.codes.bits import Bits
+from renderer.directional.codes.chosen import Chosen, learn_sets
 from renderer.directional.codes.code import Code
+from renderer.directional.codes.codebook import TAUGHT, Codebook, learn
+from renderer.directional.codes.exact_harmonics import ExactHarmonics
 from renderer.directional.codes.harmonics import Harmonics
+from renderer.directional.codes.horizon_ring import HorizonRing
+from renderer.directional.codes.spherical_harmonics import SphericalHarmonics
 from renderer.directional.hemisphere import Hemisphere, hemisphere_of
 from renderer.directional.shadow_hemispheres import unpacked
 
@@ -18,13 +23,27 @@ POINTS = 1 << 16
 """Coded at once."""
 
 
-def code_of(name: str, layout: Hemisphere, size: int) -> Code:
-    """A code by its technique's kind, for masks of a layout and so many bytes a point."""
-    makers: dict[str, Callable[[], Code]] = {
-        "bits": lambda: Bits(layout),
-        "harmonics": lambda: Harmonics(layout, size),
-    }
-    return makers[name]()
+MAKERS: dict[str, Callable[[Hemisphere, int, np.ndarray], Code]] = {
+    "bits": lambda layout, size, masks: Bits(layout),
+    "chosen": lambda layout, size, masks: learn_sets(layout, masks),
+    "codebook": learn,
+    "exact_harmonics": lambda layout, size, masks: ExactHarmonics(layout),
+    "harmonics": lambda layout, size, masks: Harmonics(layout, size),
+    "horizon_ring": lambda layout, size, masks: HorizonRing(layout, size),
+    "spherical_harmonics": lambda layout, size, masks: SphericalHarmonics(layout, size),
+}
+"""Codes by their technique's kind, for masks of a layout, so many bytes a point, and masks to learn of."""
+
+CODE_SIZES = {
+    "bits": (0,),
+    "chosen": (9,),
+    "codebook": (5, 9),
+    "exact_harmonics": (0,),
+    "harmonics": (5, 9, 17, 33),
+    "horizon_ring": (5, 9, 17),
+    "spherical_harmonics": (5, 9, 17, 33),
+}
+"""Bytes a point that each code may have; 0 where the mask leaves no choice."""
 
 
 def bake_code(
@@ -33,17 +52,19 @@ def bake_code(
     """Words of every used point.
 
     Args:
-        arguments: code (a technique's kind), size [bytes], directions.
+        arguments: kind of the technique, directions, and, where its code leaves a choice, size [bytes].
         inputs: shadows, as `bake_shadows` gives them.
 
     Returns:
-        `words` (M, W) uint32.
+        `words` (M, W) uint32, and the tables of codes that have any.
     """
-    layout = hemisphere_of(arguments["directions"])
-    code = code_of(arguments["code"], layout, arguments["size"])
-    bits = inputs["shadows"]["bits"]
-    parts = [code.encode(unpacked(bits[:1], layout.count))[:0]]
+    layout, bits = hemisphere_of(arguments["directions"]), inputs["shadows"]["bits"]
+    progress(0.0, "learning shadow hemispheres")
+    taught = unpacked(bits[:: -(-len(bits) // TAUGHT)], layout.count)
+    code = MAKERS[arguments["kind"]](layout, arguments.get("size", 0), taught)
+    parts = []
     for start in range(0, len(bits), POINTS):
         progress(start / len(bits), "coding shadow hemispheres")
         parts.append(code.encode(unpacked(bits[start : start + POINTS], layout.count)))
-    return {"words": np.concatenate(parts)}
+    tables = code.tables() if isinstance(code, Codebook | Chosen) else {}
+    return {"words": np.concatenate(parts), **tables}

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -36,34 +35,29 @@ class Bits:
 
     def evaluate(self, words: np.ndarray, places: np.ndarray) -> np.ndarray:
         """As `Code`."""
-        return read_cells(self.layout, lambda numbers: bit_of(words, numbers), places, self.blend)
+        octets = np.ascontiguousarray(words).view(np.uint8)
+        masks = np.unpackbits(octets, axis=1, count=self.layout.count, bitorder="little")
+        return read_masks(self.layout, masks, places, self.blend)
 
 
-def bit_of(words: np.ndarray, numbers: np.ndarray) -> np.ndarray:
-    """Bits (M, k) by their numbers (k,) or (M, k)."""
-    numbers = np.broadcast_to(numbers, (len(words), numbers.shape[-1]))
-    chosen = np.take_along_axis(words, numbers // 32, axis=1)
-    return np.asarray((chosen >> (numbers % 32).astype(np.uint32)) & np.uint32(1)).astype(np.float64)
-
-
-def read_cells(
-    layout: Hemisphere, cell: Callable[[np.ndarray], np.ndarray], places: np.ndarray, blend: bool
-) -> np.ndarray:
-    """Values at places (.., 2) of what `cell` gives for numbers of directions: nearest, or blended of four.
+def read_masks(layout: Hemisphere, masks: np.ndarray, places: np.ndarray, blend: bool) -> np.ndarray:
+    """Values (M, k) of masks (M, count) at places (k, 2) or (M, k, 2): of the nearest direction, or blended of four.
 
     Between rows the way counts in steps, along a row in parts of it; below the lowest row it is that one.
     """
     rows, azimuths = layout.elevations, layout.azimuths
+    places = np.broadcast_to(places, (len(masks), *places.shape[-2:]))
 
-    def number(row: np.ndarray, turn: np.ndarray) -> np.ndarray:
-        return np.asarray(np.where(row >= rows, rows * azimuths, row * azimuths + turn % azimuths))
+    def cell(row: np.ndarray, turn: np.ndarray) -> np.ndarray:
+        number = np.where(row >= rows, rows * azimuths, row * azimuths + turn % azimuths)
+        return np.take_along_axis(masks, number, axis=1).astype(np.float64)
 
     height, turn = places[..., 0], places[..., 1]
     if not blend:
-        return cell(number(np.floor(height).astype(int), np.floor(turn + 0.5).astype(int)))
+        return cell(np.floor(height).astype(int), np.floor(turn + 0.5).astype(int))
     above = np.maximum(height - 0.5, 0)
     row, first = np.floor(above).astype(int), np.floor(turn).astype(int)
     v, u = above - row, turn - first
-    low = cell(number(row, first)) * (1 - u) + cell(number(row, first + 1)) * u
-    high = cell(number(row + 1, first)) * (1 - u) + cell(number(row + 1, first + 1)) * u
+    low = cell(row, first) * (1 - u) + cell(row, first + 1) * u
+    high = cell(row + 1, first) * (1 - u) + cell(row + 1, first + 1) * u
     return np.asarray(low * (1 - v) + high * v)

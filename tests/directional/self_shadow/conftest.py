@@ -42,7 +42,7 @@ def thread() -> Iterator[GLThread]:
 @pytest.fixture(scope="session")
 def see(thread: GLThread) -> See:
     """Visibilities (M,) that a technique's GLSL reads of words (M, W), in local directions (M, 3):
-    `see(technique, layout, words, towards, tables)`."""
+    `see(technique, layout, words, towards, tables, uniforms..)`."""
 
     def seen(
         technique: Any,
@@ -50,13 +50,16 @@ def see(thread: GLThread) -> See:
         words: np.ndarray,
         towards: np.ndarray,
         tables: Mapping[str, np.ndarray] | None = None,
+        **values: Any,
     ) -> np.ndarray:
-        return thread.call(_seen, technique, layout, words, towards, dict(tables or {}))
+        return thread.call(_seen, technique, layout, words, towards, dict(tables or {}), values)
 
     return seen
 
 
-def _seen(gl: Any, technique: Any, layout: Hemisphere, words: np.ndarray, towards: np.ndarray, tables: dict) -> Any:
+def _seen(
+    gl: Any, technique: Any, layout: Hemisphere, words: np.ndarray, towards: np.ndarray, tables: dict, more: dict
+) -> Any:
     blocks = -(-words.shape[1] // 4)
     filled = np.zeros((len(words), 4 * blocks), np.uint32)
     filled[:, : words.shape[1]] = words
@@ -64,7 +67,7 @@ def _seen(gl: Any, technique: Any, layout: Hemisphere, words: np.ndarray, toward
         "code_words": gl.texture2d(filled.reshape(len(words), blocks, 4), filter="nearest"),
         **{f"self_shadow_{name}": made for name, made in technique.textures_of(gl, {"shadow_code": tables}).items()},
     }
-    values = {"self_shadow_azimuths": layout.azimuths, "self_shadow_elevations": layout.elevations}
+    values = {"self_shadow_azimuths": layout.azimuths, "self_shadow_elevations": layout.elevations, **more}
     samplers = [f"uniform {kind} self_shadow_{name};" for name, kind in technique.textures.items()]
     given = [uniform_declarations(type(technique), "self_shadow"), *technique.extra_declarations, *samplers, SURFEL]
     own = glsl_file("directional", "self_shadow", technique.kind)
@@ -147,3 +150,13 @@ def errors(code: Any, masks: np.ndarray) -> tuple[float, float]:
     raw = code.evaluate(code.encode(masks), cells_of(code.layout))[:, :-1]
     rows = masks[:, :-1]
     return float(np.sqrt(((np.clip(raw, 0, 1) - rows) ** 2).mean())), float(((raw > 0.5) != rows).mean())
+
+
+def leaves(layout: Hemisphere, count: int, seed: int = 4) -> np.ndarray:
+    """Masks (count, n) of skies behind many small leaves, which no code of nine bytes holds."""
+    rng = np.random.default_rng(seed)
+    axes = rng.normal(size=(count, 60, 3))
+    axes /= np.linalg.norm(axes, axis=-1, keepdims=True)
+    axes[..., 2] = np.abs(axes[..., 2])
+    inside = np.einsum("nkc,dc->nkd", axes, layout.directions()) > np.cos(0.16)
+    return np.asarray(~inside.any(axis=1))
