@@ -62,11 +62,12 @@ def spoil(monkeypatch: pytest.MonkeyPatch) -> Callable[[str, str, str], Abstract
     """Makes a mistake in a shader while entered: `with spoil(file, right, wrong): ...`."""
     # Imported here, so that tests without shaders need not wait for them.
     from renderer.clouds import program as clouds
+    from renderer.directional import program as directional
     from renderer.forest import program as forest
     from renderer.gl import source
     from renderer.shells import program as shells
 
-    composed = (clouds.composed, forest._composed, forest.pass_source, shells.composed)
+    composed = (clouds.composed, forest._composed, forest.pass_source, shells.composed, directional.composed)
 
     @contextmanager
     def spoiled(file: str, right: str, wrong: str) -> Iterator[None]:

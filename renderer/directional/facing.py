@@ -1,0 +1,54 @@
+"""Which faces a camera sees, and which directions their texels need."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from renderer.directional.casting import AXES, face_frame, face_middles
+from renderer.directional.hemisphere import Hemisphere
+from renderer.world.camera import Orthographic, pose
+
+GRID = 65
+"""Places along a face's side at which directions are looked at."""
+
+
+def side(face: int) -> float:
+    """1 where a face's outward normal runs along its axis, -1 where against it."""
+    return 1.0 if face % 2 else -1.0
+
+
+def faces_seen(camera: Any, box: np.ndarray) -> list[int]:
+    """The faces whose outer side the camera sees, at most three."""
+    at = pose(camera)
+    seen = []
+    for face in range(6):
+        axis = AXES[face][2]
+        plane = box[face % 2, axis]
+        ahead = -at.forward[axis] if isinstance(camera, Orthographic) else at.eye[axis] - plane
+        if side(face) * ahead > 0:
+            seen.append(face)
+    return seen
+
+
+def directions_needed(camera: Any, face: int, box: np.ndarray, layout: Hemisphere) -> np.ndarray:
+    """Numbers of the directions of a face's hemisphere from which its texels may be asked: those round each direction
+    that a texel is seen from, with one more on every side, since a pixel's ray comes from between them."""
+    at = pose(camera)
+    places = face_middles(box, face, GRID)
+    to_eye = np.broadcast_to(-at.forward, places.shape) if isinstance(camera, Orthographic) else at.eye - places
+    local = to_eye / np.linalg.norm(to_eye, axis=-1, keepdims=True) @ face_frame(face).T
+    row = np.floor(np.arcsin(np.clip(local[:, 2], 0, 1)) / layout.step - 0.5).astype(int)
+    turn = np.arctan2(local[:, 1], local[:, 0]) / (2 * np.pi) * layout.azimuths
+    azimuth = np.floor(turn).astype(int)
+    needed = np.zeros((layout.elevations + 1, layout.azimuths), bool)
+    highest = int(row.max()) + 2
+    for up in range(-1, 3):
+        for across in range(-1, 3):
+            needed[np.clip(row + up, 0, layout.elevations), (azimuth + across) % layout.azimuths] = True
+    if highest >= layout.elevations:  # round the zenith, azimuths between two texels may be any
+        needed[-4:] = True
+    rows, azimuths = np.nonzero(needed[:-1])
+    found = rows * layout.azimuths + azimuths
+    return np.append(found, layout.count - 1) if needed[-1].any() else found

@@ -1,0 +1,1 @@
+"""Which points are seen, texel by texel or pixel by pixel."""
