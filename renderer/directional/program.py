@@ -139,7 +139,7 @@ class Variant:
     Attributes:
         sky: whether the sky is behind. texels: of a face's side. directions: of a face's hemisphere.
         selection_count: points that a texel takes, 1 or 4. per_pixel: whether pixels choose, and not texels.
-        shadow_blocks: texels of a point's shadow code. lamp: macros of the lamp.
+        shadow_blocks: texels of a point's shadow code. lights: macros of lamp and surroundings.
     """
 
     sky: bool
@@ -148,7 +148,7 @@ class Variant:
     selection_count: int
     per_pixel: bool
     shadow_blocks: int
-    lamp: tuple[tuple[str, str], ...]
+    lights: tuple[tuple[str, str], ...]
 
     def defines(self) -> dict[str, str | int]:
         """Its macros."""
@@ -161,7 +161,7 @@ class Variant:
             "SELECTION_COUNT": self.selection_count,
             "PER_PIXEL": int(self.per_pixel),
             "SHADOW_BLOCKS": self.shadow_blocks,
-            **dict(self.lamp),
+            **dict(self.lights),
         }
 
 
@@ -175,7 +175,7 @@ def variant_of(state: DirectionalState, shadow_blocks: int) -> Variant:
         chosen.count,
         chosen.per_pixel,
         shadow_blocks,
-        tuple(defines(state.lamp, "lamp").items()),
+        (*defines(state.lamp, "lamp").items(), ("ENVIRONMENT_SKY", str(int(state.environment.kind == "sky")))),
     )
 
 

@@ -108,7 +108,7 @@ def test_tiles_hold_every_value_in_its_place() -> None:
 
 
 def test_eight_values_are_as_good_as_sixteen_without_a_grain() -> None:
-    """Equal where the view's azimuth is a node's; between, a quarter of the second difference at most (errata 003-4)."""
+    """Equal where the view has a node's azimuth; else a quarter of the second difference at most (errata 003-4)."""
     rng = np.random.default_rng(6)
     theta, phi = np.radians([0.0, 40, 85]), np.arange(12) * (np.pi / 6)
     values = rng.random((3, 1, 3, 12, 3))
