@@ -5,9 +5,34 @@ from __future__ import annotations
 from collections.abc import Callable
 from concurrent.futures import Future
 from dataclasses import dataclass
+from typing import Protocol
 
+from renderer.core.registry import phenomenon
 from renderer.core.technique import Arrays
 from renderer.core.work import Task
+from renderer.world.state import SceneState
+
+COARSE_FIRST_S = 6.0
+"""A bake that takes longer [s] is worth a coarse one before it."""
+
+
+class Knowing(Protocol):
+    """Who knows what is baked."""
+
+    def prepared(self, state: SceneState) -> bool:
+        """Whether a state can be drawn at once."""
+
+    def expected_seconds(self, state: SceneState) -> float:
+        """What baking it will take."""
+
+
+def coarse_of(session: Knowing, state: SceneState) -> SceneState | None:
+    """A state that looks about the same and is baked much sooner; None where there is none, or no need of one."""
+    make = phenomenon(state.scene).coarse
+    if make is None or session.prepared(state) or (long := session.expected_seconds(state)) < COARSE_FIRST_S:
+        return None
+    found: SceneState = make(state)
+    return found if session.expected_seconds(found) < long / 2 else None
 
 
 @dataclass(frozen=True)

@@ -21,7 +21,7 @@ from renderer.core.work import Workers
 from renderer.describing import described, listed
 from renderer.gl.thread import GLThread
 from renderer.picture import Frame, Picture
-from renderer.preparation import Preparation, following
+from renderer.preparation import Preparation, coarse_of, following
 from renderer.view import Painter, Place, View, exposure_of, paint
 from renderer.world.sampling import offset
 from renderer.world.state import SceneState, migrate, samples_of
@@ -33,9 +33,7 @@ if TYPE_CHECKING:
     from renderer.truth import Judge
 
 Report = Callable[[Progress], None]
-
-KEPT_IN_MEMORY = 24
-"""Baked results that stay in memory; what one state needs is well below."""
+KEPT_IN_MEMORY = 24  # baked results; what one state needs is well below
 
 __all__ = ["Frame", "Picture", "Preparation", "Session", "View"]
 
@@ -124,6 +122,10 @@ class Session:
     def expected_seconds(self, state: SceneState) -> float:
         """What baking the state will take on two cores; 0 where the cache has it all."""
         return sum(bake.seconds for bake in self._bakes(state) if bake_key(bake) not in self.cache)
+
+    def coarse(self, state: SceneState) -> SceneState | None:
+        """What may be shown while a state is baked: see `renderer.preparation`."""
+        return coarse_of(self, state)
 
     def prepare(self, state: SceneState, on_progress: Report | None = None) -> Preparation:
         """Bake what the state needs, or take it from the cache; nobody waits on this thread."""

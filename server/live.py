@@ -129,7 +129,7 @@ class Live:
 
         def prepared(wish: Wish) -> None:
             pane.accept(wish.state, wish.version)
-            if index == 0:
+            if index == 0 and not wish.coarse:
                 self._drawn = wish.state.model_dump(mode="json")
             self.painter.wake()
 

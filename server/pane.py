@@ -37,6 +37,8 @@ class Pane:
         """Show a prepared state from now on."""
         if self.state is None or state != self.state:
             self.serial += 1
+            if version == self.version:  # what stood for it so far was coarser
+                self.shown = self.final = None
         self.state = state
         self.version = version
 

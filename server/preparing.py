@@ -23,10 +23,15 @@ PROGRESS_S = 0.1
 
 @dataclass(frozen=True)
 class Wish:
-    """A state to be prepared, and the version of the document it came from."""
+    """A state to be prepared, and the version of the document it came from.
+
+    Attributes:
+        coarse: it stands for a finer one that is still on its way.
+    """
 
     state: Any
     version: int
+    coarse: bool = False
 
 
 class Preparer:
@@ -57,10 +62,13 @@ class Preparer:
     def want(self, wish: Wish) -> None:
         """Prepare this instead of anything wished before; at once where nothing is to be computed."""
         self._wish = wish
-        if self._running is None and not self._wake.is_set() and self._hub.session.prepared(wish.state):
+        session = self._hub.session
+        if self._running is None and not self._wake.is_set() and session.prepared(wish.state):
             self._prepared(wish)
-        else:
-            self._wake.set()
+            return
+        if (soon := session.coarse(wish.state)) is not None and session.prepared(soon):
+            self._prepared(Wish(soon, wish.version, coarse=True))
+        self._wake.set()
 
     def cancel(self) -> None:
         """Stop the running precomputation, if there is one."""
@@ -87,13 +95,22 @@ class Preparer:
                 self._telling.cancel()
 
     async def _prepare(self, wish: Wish) -> None:
+        """Prepare a wish, after what may be shown sooner."""
+        soon = self._hub.session.coarse(wish.state)
+        if soon is not None and not self._hub.session.prepared(soon):
+            if not await self._follow(wish, Wish(soon, wish.version, coarse=True)):
+                return
+        await self._follow(wish, wish)
+
+    async def _follow(self, wish: Wish, part: Wish) -> bool:
+        """Prepare a wish or what stands for it; whether it is still wished for then."""
         older = self._running
         try:
-            self._running = await self._start(wish)
+            self._running = await self._start(wish, part.state)
         except Exception as failure:  # whatever the state asks for wrongly is told; the session lives on
             self._running = None
             await self._failed(wish, said(failure)[0])
-            return
+            return False
         finally:
             if older is not None:
                 # Only now: what both need goes on, since the newer wish holds it too.
@@ -101,24 +118,25 @@ class Preparer:
         done = asyncio.wrap_future(self._running.future)
         done.add_done_callback(lambda future: future.cancelled() or future.exception())
         if not done.done() and not await self._first(done):
-            return
+            return False
         self._running = None
         problem = asyncio.CancelledError() if done.cancelled() else done.exception()
         if problem is None and self._wish is not None:
-            self._prepared(wish)
+            self._prepared(part)
         elif problem is not None and self._wish is wish:
             await self._failed(wish, said(problem)[0])
-        if self._announced:
+        if self._announced and not part.coarse:
             self._announced = False
             await self._tell(Ready())
+        return problem is None and self._wish is wish
 
-    async def _start(self, wish: Wish) -> facade.Preparation:
+    async def _start(self, wish: Wish, state: Any) -> facade.Preparation:
         loop = asyncio.get_running_loop()
 
         def on_progress(advance: facade.Advance) -> None:
             loop.call_soon_threadsafe(self._progress, wish, advance)
 
-        return await self._hub.prepare(wish.state, on_progress)
+        return await self._hub.prepare(state, on_progress)
 
     async def _first(self, done: asyncio.Future[None]) -> bool:
         """Wait until the preparation is over (True) or a newer wish came (False).

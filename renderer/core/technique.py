@@ -131,6 +131,7 @@ class Phenomenon:
         name: as in the document's `scene`. place: among the scenes; the page opens on the first.
         state: the pydantic model of its whole state document.
         presets: named patches of the default document, with a title each.
+        coarse: `state -> state` that looks about the same and is baked in seconds: shown while the other is on its way.
         combinations: named patches of the slots alone, which leave view and world as they are.
         bakes: what a state needs precomputed, inputs first.
         open: makes its renderer on the GL thread.
@@ -160,6 +161,7 @@ class Phenomenon:
     combinations: Mapping[str, Preset] = field(default_factory=dict)
     place: int = 0
     world_bakes: Callable[[Any], list[Bake]] | None = None
+    coarse: Callable[[Any], Any] | None = None
     outline: Callable[[Any, Mapping[str, Arrays]], Outline] | None = None
 
 

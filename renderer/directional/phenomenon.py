@@ -9,7 +9,7 @@ from renderer.directional.bakes import bakes, world_bakes
 from renderer.directional.presets import PRESETS
 from renderer.directional.probe import probe
 from renderer.directional.renderer import DirectionalRenderer
-from renderer.directional.state import DEFAULTS, DirectionalState
+from renderer.directional.state import DEFAULTS, DirectionalState, coarse
 from renderer.directional.world_arrays import NEEDS, world_arrays
 from renderer.world import sky
 from renderer.world.sun import angles
@@ -60,4 +60,5 @@ PHENOMENON = Phenomenon(
     probe=probe,
     place=3,
     world_bakes=world_bakes,
+    coarse=coarse,
 )

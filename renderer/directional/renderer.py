@@ -122,7 +122,8 @@ class DirectionalRenderer:
     def _blank(self, kind: str) -> Any:
         """A texel for a sampler that a technique has no use for."""
         dtype = np.uint32 if kind.startswith("u") else np.float32
-        return self._own.get(("blank", kind), lambda: {"blank": self._gl.texture2d(np.zeros((1, 1, 4), dtype))})["blank"]
+        texel = np.zeros((1, 1, 4), dtype)
+        return self._own.get(("blank", kind), lambda: {"blank": self._gl.texture2d(texel)})["blank"]
 
     def _layers(
         self, state: DirectionalState, baked: Baked, arrays: Mapping[str, Arrays], box: np.ndarray, faces: list[int]

@@ -83,3 +83,14 @@ class DirectionalState(SceneState):
     def lighting(self) -> tuple[Any, ...]:
         """What the light of a point depends on, beside the sun and what was baked."""
         return (self.light, self.self_shadow, self.environment, self.lamp)
+
+
+def coarse(state: DirectionalState) -> DirectionalState:
+    """The state with fewer points, texels and directions: baked within seconds."""
+    finest = {"texels": min(state.visibility.texels, 64), "directions": min(state.visibility.directions, 129)}
+    fewer = {
+        "cloud": state.cloud.model_copy(update={"points": min(state.cloud.points, 100_000)}),
+        "visibility": state.visibility.model_copy(update=finest),
+        "hemispheres": state.hemispheres.model_copy(update={"directions": min(state.hemispheres.directions, 129)}),
+    }
+    return state.model_copy(update=fewer)

@@ -130,6 +130,7 @@ class FakeSession:
     Attributes:
         gate: drawing waits for it. draw_seconds: time of a 64 x 64 picture [s].
         bake_gate: preparing a density above 1 waits for it. start_gate: so does its very start.
+        coarse_density: is shown while another is baked, where there is one.
     """
 
     def __init__(self, folder: Path) -> None:
@@ -137,6 +138,7 @@ class FakeSession:
         self.gl = SimpleNamespace(info=SimpleNamespace(renderer="fake", vendor="none", version=(3, 3), software=True))
         self.assets = FakeAssets()
         self.pool = ThreadPoolExecutor(1)
+        self.coarse_density: float | None = None
         self.gate, self.bake_gate, self.drawing, self.start_gate = (threading.Event() for _ in range(4))
         self.gate.set()
         self.bake_gate.set()
@@ -200,6 +202,11 @@ class FakeSession:
 
     def expected_seconds(self, state: FakeState) -> float:
         return 0.0 if self.prepared(state) else 1.0
+
+    def coarse(self, state: FakeState) -> FakeState | None:
+        if self.coarse_density is None or self.prepared(state):
+            return None
+        return state.model_copy(update={"density": self.coarse_density})
 
     def prepare(self, state: FakeState, on_progress: Any = None) -> FakePreparation:
         preparation = FakePreparation()

@@ -34,6 +34,25 @@ def test_a_bake_reports_progress_and_ends_with_ready(
         assert talk.frames[-1][0].version == 2
 
 
+def test_a_coarse_picture_comes_before_the_fine_one(
+    client: TestClient, session: FakeSession, hello: dict[str, Any]
+) -> None:
+    with client.websocket_connect("/api/session") as socket:
+        talk = open_at_rest(socket, hello)
+        session.bake_gate.clear()
+        session.coarse_density = 0.5  # baked at once: the gate holds what is above 1
+        talk.send(type="patch", patch={"density": 5}, id=1)
+        talk.until("idle")
+        drawn = [header.version for header, _ in talk.frames]
+        assert drawn == [2]
+        assert 5 not in session.baked
+        session.bake_gate.set()
+        talk.until("ready")
+        talk.until("idle")
+        assert [header.version for header, _ in talk.frames] == [2, 2]
+        assert 5 in session.baked
+
+
 def test_a_newer_state_drops_the_older_bake(client: TestClient, session: FakeSession, hello: dict[str, Any]) -> None:
     with client.websocket_connect("/api/session") as socket:
         talk = open_at_rest(socket, hello)
