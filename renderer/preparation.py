@@ -27,7 +27,7 @@ class Knowing(Protocol):
 
 
 def coarse_of(session: Knowing, state: SceneState) -> SceneState | None:
-    """A state that looks about the same and is baked much sooner; None where there is none, or no need of one."""
+    """A state to show while another is baked, much sooner baked itself; None where there is none, or no need of one."""
     make = phenomenon(state.scene).coarse
     if make is None or session.prepared(state) or (long := session.expected_seconds(state)) < COARSE_FIRST_S:
         return None

@@ -123,9 +123,7 @@ class Session:
         """What baking the state will take on two cores; 0 where the cache has it all."""
         return sum(bake.seconds for bake in self._bakes(state) if bake_key(bake) not in self.cache)
 
-    def coarse(self, state: SceneState) -> SceneState | None:
-        """What may be shown while a state is baked: see `renderer.preparation`."""
-        return coarse_of(self, state)
+    coarse = coarse_of
 
     def prepare(self, state: SceneState, on_progress: Report | None = None) -> Preparation:
         """Bake what the state needs, or take it from the cache; nobody waits on this thread."""
