@@ -6,6 +6,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from renderer.directional.morton import morton
 from renderer.world.mesh_normals import corner_normals, face_vectors
 
 FLATTEST = 4.0
@@ -75,11 +76,21 @@ def compact(solid: Solid) -> Solid:
     else:
         done.append((faces, normals, source))
     faces, normals, source = (np.concatenate(parts) for parts in zip(*done))
-    # Parts of a face stand together, as neighbours of the whole did: neighbouring points have neighbouring numbers.
-    order = np.argsort(source, kind="stable")
+    order = _order(vertices[faces].mean(axis=1), source)
     faces, normals, source = faces[order], normals[order], source[order]
     return replace(solid, vertices=vertices, faces=faces.astype(np.int32), normals=normals,
                    colour=solid.colour[source], source=None if solid.source is None else solid.source[source])
+
+
+def _order(middle: np.ndarray, source: np.ndarray) -> np.ndarray:
+    """Order (F,) of faces by their middles (F, 3), so that neighbouring points get neighbouring numbers and what texels
+    see packs well: that of the whole faces they are parts of, or Morton's curve where it goes from each to a nearer
+    one."""
+    given = np.argsort(source, kind="stable")
+    steps = np.linalg.norm(np.diff(middle[given], axis=0), axis=1)
+    curve = np.argsort(morton(middle, max(float(np.median(steps)), 1e-9 * float(np.ptp(middle)))), kind="stable")
+    along = np.linalg.norm(np.diff(middle[curve], axis=0), axis=1)
+    return curve if along.sum() < steps.sum() else given
 
 
 def _halved(
