@@ -12,7 +12,7 @@ from renderer.core.technique import Arrays
 from renderer.gl.context import GL
 from renderer.gl.meshes import Triangles
 from renderer.shells.animation_scene import Moment
-from renderer.shells.resident import Placed, base_texels, boundary_faces, faces_of, tet_texels
+from renderer.shells.resident import Placed, base_texels, boundary_faces, faces_of, gradients, tet_texels
 from renderer.shells.world_scale import TET_ROW, TET_TEXELS
 
 
@@ -34,6 +34,7 @@ class Following:
         self._base = base_texels(rest)
         self._tet, self._face = boundary_faces(rest["neighbour"], base)
         self._neighbour = rest["neighbour"]
+        self._gradients = gradients(rest)
         self.objects: dict[str, Any] = {
             "shell_tets": gl.texture2d(self._tets, "nearest"),
             "shell_base": gl.texture2d(self._base, "nearest"),
@@ -47,7 +48,7 @@ class Following:
             self._write(now, now.changed if known else np.arange(len(now.shell["tets"])))
             self._shown = now.key
         away = ((now.shell["positions"] - self.centre) ** 2).sum(axis=1)
-        return self.objects, Placed(self.centre, float(np.sqrt(away.max())))
+        return self.objects, Placed(self.centre, float(np.sqrt(away.max())), self._gradients)
 
     def release(self) -> None:
         """Free everything."""

@@ -49,7 +49,8 @@ SLOTS = (
         "filter",
         "Filter",
         "Which level of the texture is read.",
-        "float filter_level(float distance, mat3 gradients) // 0 is the finest",
+        "float filter_level(float distance, mat3 gradients); // 0 is the finest; "
+        "float filter_extinction(float own, vec3 place, float level) // 1/m, along the segment that was found last",
         DEFAULTS["filter"],
     ),
     Slot(

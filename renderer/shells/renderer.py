@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections import OrderedDict
 from collections.abc import Hashable, Mapping
 from typing import TYPE_CHECKING, Any
@@ -22,6 +21,7 @@ from renderer.shells.course import texture_moment
 from renderer.shells.entries import Entries
 from renderer.shells.following import Following
 from renderer.shells.frame import Frame, moved
+from renderer.shells.levels import pixel, sides, suited
 from renderer.shells.raster import Rasters
 from renderer.shells.resident import Placed, placed, shell_objects
 from renderer.shells.texture.block import reference_length, texture_of
@@ -69,10 +69,14 @@ class ShellsRenderer:
         arrays |= {"surface": now.surface, "shell": now.shell}
         shell_key = (now.key, state.base.opaque)
         objects, place = self._shell(shell_key, now, baked["shell"], state)
+        state = suited(state, place, arrays["texture"]["colour"].shape, size)
         then = texture_moment(state.texture, state.course, state.time, state.voxels.wrap == "repeat")
-        texture_key, texture = self._texture(state, baked, then.words)
-        values = self._light(state, arrays) | moved(state.camera, size, place.centre) | _pixel(state, size)
+        texture_key, texture = self._texture(state, baked, then.words, place)
+        values = self._light(state, arrays) | moved(state.camera, size, place.centre)
+        angle, width = pixel(state, size)
         values |= {
+            "pixel_angle": angle,
+            "pixel_side": width,
             "picture_size": size,
             "pixel_offset": offset,
             "sample_shift": float(sample),
@@ -96,6 +100,8 @@ class ShellsRenderer:
             "shell_normal": texture.normal,
             **self._sky_view(state, baked),
         }
+        if texture.beside is not None:
+            textures["filter_beside"] = texture.beside
         shown = (texture_key, then.slide)
         frame = Frame(self, state, arrays, shell_key, shown, place, size, offset, sample, textures, values)
         looked, said = state.shadow.look(frame)
@@ -151,15 +157,17 @@ class ShellsRenderer:
         return self._following.at(now)
 
     def _texture(
-        self, state: ShellsState, baked: Baked, moment: Mapping[str, float]
+        self, state: ShellsState, baked: Baked, moment: Mapping[str, float], place: Placed
     ) -> tuple[Hashable, Uploaded]:
         thickness = state.extrusion.thickness
         filtered = getattr(state.filter, "levels", "")
         reading = (state.voxels.interpolation, state.voxels.wrap, state.voxels.storage)
-        key = (baked["texture"].key, tuple(moment.items()), thickness, reading, filtered)
+        shape = baked["texture"].arrays["colour"].shape
+        wide = sides(place, shape) if filtered == "directional" else (0.0, 0.0)
+        key = (baked["texture"].key, tuple(moment.items()), thickness, reading, filtered, wide)
         if key not in self._textures:
             made = texture_of(baked["texture"].arrays, thickness, **moment)
-            self._textures[key] = upload(self._gl, made, state.voxels, thickness, filtered)
+            self._textures[key] = upload(self._gl, made, state.voxels, thickness, filtered, wide)
             while len(self._textures) > TEXTURES_KEPT:
                 self._textures.popitem(last=False)[1].release()
         self._textures.move_to_end(key)
@@ -190,13 +198,6 @@ def holding(shell: Arrays, camera: Any) -> int:
     eye = pose(camera).eye
     inside = (shell["planes"][..., :3] @ eye + shell["planes"][..., 3] <= 0).all(axis=1)
     return int(np.argmax(inside)) if inside.any() else -1
-
-
-def _pixel(state: ShellsState, size: tuple[int, int]) -> dict[str, float]:
-    """How wide a pixel is: an angle, or a length in a parallel view."""
-    if isinstance(state.camera, Orthographic):
-        return {"pixel_angle": 0.0, "pixel_side": state.camera.width / size[0]}
-    return {"pixel_angle": 2 * math.tan(math.radians(state.camera.field_of_view) / 2) / size[1], "pixel_side": 0.0}
 
 
 def _free(objects: dict[str, Any]) -> None:

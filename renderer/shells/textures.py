@@ -11,6 +11,7 @@ import numpy as np
 from renderer.gl.context import GL
 from renderer.gl.textures import Filter
 from renderer.shells.texture.block import ShellTexture
+from renderer.shells.texture.directional import directional_pyramid
 from renderer.shells.texture.extinction import Extinct, bytes_of, form_of, halves
 from renderer.shells.texture.pyramid import Extents, above_pyramid, extents, mean_pyramid, thesis_pyramid
 from renderer.shells.voxels import Voxels
@@ -32,13 +33,15 @@ class Uploaded:
     """A texture on the GPU, and what its numbers stand for.
 
     Attributes:
-        matter, normal: as shaders/shells/matter.glsl reads them.
+        matter, normal: as shaders/shells/matter.glsl reads them. beside: extinctions along u and v, in the same unit as
+            those of `matter`, where the filter tells directions apart.
         scale: what 1 in them stands for, 1/m. levels: coarser ones.
         coding: of normals, factor and summand that make them of what is read.
     """
 
     matter: moderngl.Texture3D
     normal: moderngl.Texture3D
+    beside: moderngl.Texture3D | None
     scale: float
     levels: int
     coding: tuple[float, float]
@@ -47,34 +50,49 @@ class Uploaded:
         """Free them."""
         self.matter.release()
         self.normal.release()
+        if self.beside is not None:
+            self.beside.release()
 
 
-def upload(gl: GL, texture: ShellTexture, voxels: Voxels, thickness: float, levels: str) -> Uploaded:
+def upload(
+    gl: GL, texture: ShellTexture, voxels: Voxels, thickness: float, levels: str, sides: tuple[float, float] = (0, 0)
+) -> Uploaded:
     """The texture, in the form that its interpolation asks for.
 
     Args:
         texture: as it is at the moment. thickness: of the shell [m]. levels: how coarser ones are made, a key of
-            `PYRAMIDS`; empty where none is read.
+            `PYRAMIDS`; empty where none is read. sides: of a voxel along u and v [m], for `directional`.
     """
     finest = form_of(texture)
     height = thickness / len(finest.matter) / texture.reference_length
-    made = [finest]
+    made, beside = [finest], [finest.matter[..., [3, 3]]] if levels == "directional" else []
     if levels and voxels.interpolation != "nearest":
-        made = PYRAMIDS[levels](finest, extents(finest.matter.shape, texture.size, height))
+        if levels == "directional":
+            u, v = (one / texture.reference_length for one in sides)
+            both = directional_pyramid(finest, (u, v, height))
+            made, beside = [one.level for one in both], [one.beside for one in both]
+        else:
+            made = PYRAMIDS[levels](finest, extents(finest.matter.shape, texture.size, height))
     greatest = float(finest.matter[..., 3].max()) or 1.0
     if voxels.interpolation == "straight":
         greatest = 1.0
         parts = [(texture.colour, texture.normal)]
         for level in made[1:]:
             parts.append(_straight(level, *parts[-1]))
+        beside = [-np.expm1(-one) for one in beside]
     else:
         parts = [(level.matter, level.surface) for level in made]
     kind = storage_of(voxels, float(texture.colour[..., :3].max()), float(texture.colour[..., 3].max()))
     stored = [[_stored(part[which], 1 / greatest, kind, which == 1) for part in parts] for which in range(2)]
     side = voxels.wrap
-    matter, normal = (gl.texture3d(part[0], _between(voxels), (side, side, "clamp"), part[1:]) for part in stored)
+    if beside:
+        stored.append([_stored(part, 1 / greatest, kind, False) for part in beside])
+    matter, normal, *rest = (
+        gl.texture3d(part[0], _between(voxels), (side, side, "clamp"), part[1:]) for part in stored
+    )
     coding = (255 / 127, -128 / 127) if kind == "bytes" else (1.0, 0.0)
-    return Uploaded(matter, normal, greatest / texture.reference_length, len(made) - 1, coding)
+    scale = greatest / texture.reference_length
+    return Uploaded(matter, normal, rest[0] if rest else None, scale, len(made) - 1, coding)
 
 
 def _between(voxels: Voxels) -> Filter:

@@ -22,10 +22,7 @@ Segment cell_segment(Ray ray, float enter, vec4 a, vec4 b, vec4 c, vec4 u, vec4 
     bool between = near < far && far < 1.0e29;
     near = between ? near : enter;
     far = between ? far : enter;
-    vec3 start = vec3(dot(u.xyz, ray.origin) + u.w, dot(v.xyz, ray.origin) + v.w, dot(w.xyz, ray.origin) + w.w);
-    start.xy += texture_slide;
-    vec3 slope = vec3(dot(u.xyz, ray.direction), dot(v.xyz, ray.direction), dot(w.xyz, ray.direction));
-    return Segment(start + near * slope, start + far * slope, near, far, mat3(u.xyz, v.xyz, w.xyz));
+    return way_segment(ray, near, far, u, v, w);
 }
 
 // The same from a face's number, 4 cell + face, and the distance at which a ray meets it.

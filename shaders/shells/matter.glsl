@@ -10,12 +10,24 @@ struct Matter {
     float extinction;
 };
 
+float filter_extinction(float own, vec3 place, float level);
+
+// Extinction (1/m) of a number that a texture keeps.
+float matter_stored(float number) {
+#if INTERPOLATION == STRAIGHT
+    return -log(max(1.0 - number, LEAST_PASSED)) * matter_scale;
+#else
+    return number * matter_scale;
+#endif
+}
+
 Matter matter_at(vec3 place, float level) {
     vec4 texel = textureLod(shell_matter, place, level);
+    float extinction = filter_extinction(matter_stored(texel.a), place, level);
 #if INTERPOLATION == STRAIGHT
-    return Matter(texel.rgb, -log(max(1.0 - texel.a, LEAST_PASSED)) * matter_scale);
+    return Matter(texel.rgb, extinction);
 #else
-    return Matter(texel.rgb / max(texel.a, 1.0e-7), texel.a * matter_scale);
+    return Matter(texel.rgb / max(texel.a, 1.0e-7), extinction);
 #endif
 }
 
@@ -29,7 +41,8 @@ vec4 matter_normal(vec3 place, float level, Matter matter, mat3 gradients) {
     vec4 texel = textureLod(shell_normal, place, level);
     texel.xyz = texel.xyz * normal_coding.x + normal_coding.y;
 #if INTERPOLATION != STRAIGHT
-    texel *= matter_scale / max(matter.extinction, max(1.0e-7 * matter_scale, 1.0e-20));
+    // Which it is weighted with, and not what a ray through it would find.
+    texel /= max(textureLod(shell_matter, place, level).a, 1.0e-7);
 #endif
     float share = min(length(texel.xyz), 1.0);
     vec3 towards = gradients * (texel.xyz * shell_size);

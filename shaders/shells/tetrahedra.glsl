@@ -9,6 +9,7 @@ const int BEYOND_TOP = -1;    // instead of a neighbour: the shell's top, its ba
 const int BEYOND_BASE = -2;
 const int BEYOND_RIM = -3;
 
+vec3 way_shares = vec3(0.0); // squares of a ray's direction by the texture's axes, of the segment that was found last
 int tet_here = -1;            // that holds what is lit, where the order of drawing tells it
 
 struct Ray {
@@ -58,12 +59,18 @@ Exit tet_exit(Ray ray, int tet, float enter) {
     return Exit(exit.face < 0 ? enter : max(exit.t, enter), exit.face);
 }
 
-Segment tet_segment(Ray ray, int tet, float near, float far) {
-    vec4 u = tet_texel(tet, 4), v = tet_texel(tet, 5), w = tet_texel(tet, 6);
+// The way between two distances, by the three rows of a map to texture space.
+Segment way_segment(Ray ray, float near, float far, vec4 u, vec4 v, vec4 w) {
     vec3 start = vec3(dot(u.xyz, ray.origin) + u.w, dot(v.xyz, ray.origin) + v.w, dot(w.xyz, ray.origin) + w.w);
     start.xy += texture_slide;
     vec3 slope = vec3(dot(u.xyz, ray.direction), dot(v.xyz, ray.direction), dot(w.xyz, ray.direction));
+    vec3 shares = slope * slope / max(vec3(dot(u.xyz, u.xyz), dot(v.xyz, v.xyz), dot(w.xyz, w.xyz)), 1.0e-20);
+    way_shares = shares / max(shares.x + shares.y + shares.z, 1.0e-20);
     return Segment(start + near * slope, start + far * slope, near, far, mat3(u.xyz, v.xyz, w.xyz));
+}
+
+Segment tet_segment(Ray ray, int tet, float near, float far) {
+    return way_segment(ray, near, far, tet_texel(tet, 4), tet_texel(tet, 5), tet_texel(tet, 6));
 }
 
 // The tetrahedron beyond a face, or why there is none.

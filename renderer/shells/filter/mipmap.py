@@ -14,6 +14,7 @@ class Mipmap(ShellsTechnique):
     title: ClassVar[str] = "Mip levels"
     caption: ClassVar[str] = "Coarser voxels for what is small on the screen, put together across and in height."
     paper: ClassVar[str] = "Dufort 2005, section 5.3.2"
+    includes: ClassVar[tuple[str, ...]] = ("shells/footprint.glsl",)
 
     kind: Literal["mipmap"] = "mipmap"
     levels: Literal["thesis", "above", "mean"] = param(

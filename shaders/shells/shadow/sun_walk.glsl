@@ -10,6 +10,7 @@ float shadow_visibility(vec3 point) {
     Ray ray = Ray(point, sun_direction);
     int tet = tet_here, steps = 0;
     float enter = 0.0, depth = 0.0, away = length(point - camera_origin);
+    vec3 shares = way_shares; // of the ray that is lit, which goes on afterwards
     while (tet >= 0 && steps < 1024 && depth < SHADOW_DARK) {
         Exit exit = tet_exit(ray, tet, enter);
         Segment segment = tet_segment(ray, tet, enter, exit.t);
@@ -24,6 +25,7 @@ float shadow_visibility(vec3 point) {
         tet = tet_beyond(tet, exit.face);
         steps++;
     }
+    way_shares = shares;
 #if BASE_OPAQUE == 1
     if (tet == BEYOND_BASE) return 0.0;
 #endif

@@ -14,8 +14,8 @@ MIPMAP = {"kind": "mipmap", "bias": 0.0}
 
 
 def near(draw: Draw) -> float:
-    """Contrast of two cells of the board under a pixel each."""
-    camera = {"kind": "orthographic", "centre": [0, 0, 0], "direction": [0, 0, -1], "up": [0, 1, 0], "width": 0.25}
+    """Contrast of the board where a pixel is a little wider than a voxel."""
+    camera = {"kind": "orthographic", "centre": [0, 0, 0], "direction": [0, 0, -1], "up": [0, 1, 0], "width": 0.55}
     return float(2 * draw({"filter": MIPMAP, "camera": camera}, board(), size=16)[..., 0].std())
 
 
@@ -24,7 +24,7 @@ def test_a_far_board_is_grey(draw: Draw) -> None:
 
 
 def test_a_near_board_is_not(draw: Draw) -> None:
-    assert near(draw) > 0.6
+    assert near(draw) > 0.5
 
 
 def test_plates_keep_the_share_that_they_cover(draw: Draw) -> None:
@@ -57,5 +57,5 @@ def test_columns_stay_as_thin_as_they_are(draw: Draw) -> None:
     ("right", "wrong"), [("pixel_width(distance) * widest", "widest"), ("0.0, filter_coarsest)", "0.0, 0.0)")]
 )
 def test_a_wrong_width_is_found(draw: Draw, spoil: Callable, right: str, wrong: str) -> None:
-    with spoil("shells/filter/mipmap.glsl", right, wrong):
+    with spoil("shells/footprint.glsl", right, wrong):
         assert near(draw) < 0.3 or contrast(draw, MIPMAP, board()) > 0.2

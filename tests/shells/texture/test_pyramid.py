@@ -22,9 +22,9 @@ FILTERS: dict[str, Callable[[Extinct], list[np.ndarray]]] = {
     "thesis": lambda fine: [level.matter for level in thesis_pyramid(fine, CUBES)],
     "mean": lambda fine: [level.matter for level in mean_pyramid(fine)],
     "above": lambda fine: [level.matter for level in above_pyramid(fine, CUBES)],
-    "u": lambda fine: [level.along[0] for level in directional_pyramid(fine, CUBES)],
-    "v": lambda fine: [level.along[1] for level in directional_pyramid(fine, CUBES)],
-    "w": lambda fine: [level.along[2] for level in directional_pyramid(fine, CUBES)],
+    "u": lambda fine: [level.towards((1, 0, 0)) for level in directional_pyramid(fine, CUBES)],
+    "v": lambda fine: [level.towards((0, 1, 0)) for level in directional_pyramid(fine, CUBES)],
+    "w": lambda fine: [level.towards((0, 0, 1)) for level in directional_pyramid(fine, CUBES)],
 }
 
 
@@ -129,7 +129,7 @@ def test_surfaces_are_means_of_what_is_seen_of_them() -> None:
             ("mean", mean_pyramid(fine)[-1])]  # fmt: skip
     found = [(name, level.surface[0, 0, 0] / level.matter[0, 0, 0, 3]) for name, level in last]
     coarsest = directional_pyramid(fine, CUBES)[-1]
-    found.append(("seen", coarsest.surface[0, 0, 0] / coarsest.along[:, 0, 0, 0, 3].mean()))
+    found.append(("seen", coarsest.level.surface[0, 0, 0] / coarsest.level.matter[0, 0, 0, 3]))
     for name, surface in found:
         np.testing.assert_allclose(surface, wanted[name], atol=1e-5)
 
