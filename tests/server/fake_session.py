@@ -130,7 +130,7 @@ class FakeSession:
     Attributes:
         gate: drawing waits for it. draw_seconds: time of a 64 x 64 picture [s].
         bake_gate: preparing a density above 1 waits for it. start_gate: so does its very start.
-        coarse_density: is shown while another is baked, where there is one.
+        coarse_density: shown meanwhile.
     """
 
     def __init__(self, folder: Path) -> None:
@@ -140,9 +140,8 @@ class FakeSession:
         self.pool = ThreadPoolExecutor(1)
         self.coarse_density: float | None = None
         self.gate, self.bake_gate, self.drawing, self.start_gate = (threading.Event() for _ in range(4))
-        self.gate.set()
-        self.bake_gate.set()
-        self.start_gate.set()
+        for gate in (self.gate, self.bake_gate, self.start_gate):
+            gate.set()
         self.draw_seconds = 0.0
         self.drawn: list[Any] = []
         self.preparations: list[FakePreparation] = []
@@ -164,9 +163,7 @@ class FakeSession:
             "schema": FakeState.model_json_schema(),
             "defaults": FakeState().model_dump(mode="json"),
             "slots": [],
-            "presets": {
-                "noon": {"title": "Noon", "help": "High sun", "document": self.state("fake", "noon").model_dump()}
-            },
+            "presets": {"noon": {"title": "Noon", "help": "High sun", "document": self.state("fake", "noon").model_dump()}},
         }
 
     def _known(self, scene: Any) -> None:
@@ -204,9 +201,8 @@ class FakeSession:
         return 0.0 if self.prepared(state) else 1.0
 
     def coarse(self, state: FakeState) -> FakeState | None:
-        if self.coarse_density is None or self.prepared(state):
-            return None
-        return state.model_copy(update={"density": self.coarse_density})
+        wanted = self.coarse_density and not self.prepared(state)
+        return state.model_copy(update={"density": self.coarse_density}) if wanted else None
 
     def prepare(self, state: FakeState, on_progress: Any = None) -> FakePreparation:
         preparation = FakePreparation()
@@ -278,16 +274,10 @@ class FakeSession:
                 "preview": {}, "expires": 1.0}  # fmt: skip
 
     def quantities(self) -> list[dict[str, Any]]:
-        return [
-            {
-                "name": "length",
-                "title": "Length",
-                "help": "Of a file",
-                "schema": {"properties": {"factor": {"type": "number"}}},
-                "files": [{"name": "terrain", "help": "any", "required": False}],
-                "units": {"length": "m"},
-            }
-        ]
+        schema = {"properties": {"factor": {"type": "number"}}}
+        files = [{"name": "terrain", "help": "any", "required": False}]
+        said = {"name": "length", "title": "Length", "help": "Of a file", "units": {"length": "m"}}
+        return [said | {"schema": schema, "files": files}]
 
     def measure(self, quantity: str, arguments: Mapping[str, Any], files: Mapping[str, Path] | None = None) -> Any:
         for name in set(arguments) - {"factor"}:
