@@ -15,7 +15,7 @@ from renderer.directional.codes.codebook import TAUGHT, Codebook, learn
 from renderer.directional.codes.exact_harmonics import ExactHarmonics
 from renderer.directional.codes.harmonics import Harmonics
 from renderer.directional.codes.horizon_ring import HorizonRing
-from renderer.directional.codes.spherical_harmonics import SphericalHarmonics
+from renderer.directional.codes.spherical_harmonics import SphericalHarmonics, fitted
 from renderer.directional.hemisphere import Hemisphere, hemisphere_of
 from renderer.directional.shadow_hemispheres import unpacked
 
@@ -30,7 +30,7 @@ MAKERS: dict[str, Callable[[Hemisphere, int, np.ndarray], Code]] = {
     "exact_harmonics": lambda layout, size, masks: ExactHarmonics(layout),
     "harmonics": lambda layout, size, masks: Harmonics(layout, size),
     "horizon_ring": lambda layout, size, masks: HorizonRing(layout, size),
-    "spherical_harmonics": lambda layout, size, masks: SphericalHarmonics(layout, size),
+    "spherical_harmonics": fitted,
 }
 """Codes by their technique's kind, for masks of a layout, so many bytes a point, and masks to learn of."""
 
@@ -66,5 +66,5 @@ def bake_code(
     for start in range(0, len(bits), POINTS):
         progress(start / len(bits), "coding shadow hemispheres")
         parts.append(code.encode(unpacked(bits[start : start + POINTS], layout.count)))
-    tables = code.tables() if isinstance(code, Codebook | Chosen) else {}
+    tables = code.tables() if isinstance(code, Codebook | Chosen | SphericalHarmonics) else {}
     return {"words": np.concatenate(parts), **tables}

@@ -2,13 +2,13 @@
 
 On half a sphere they are not orthogonal, so coefficients are those of least squares over the directions. Any factor
 of a function is its quantiser's, so `basis` leaves all out. Coefficient k has its bits from k * bits on, even steps
-between the least and the most that any mask can give it. Orders 1, 2, 3 and 4 are 5, 9, 17 and 33 bytes.
+between the least and the most that the cloud has of it. Orders 1, 2, 3 and 4 are 5, 9, 17 and 33 bytes.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache
 
 import numpy as np
 
@@ -38,14 +38,15 @@ def basis(directions: np.ndarray, order: int) -> np.ndarray:
 
 @dataclass(frozen=True)
 class SphericalHarmonics:
-    """The first orders.
+    """The first orders; see `fitted`.
 
     Args:
-        layout: of the masks. size: bytes.
+        layout: of the masks. size: bytes. ranges: (n, 2) least value of each coefficient, and a step of its code.
     """
 
     layout: Hemisphere
-    size: int = 9
+    size: int
+    ranges: np.ndarray
 
     @property
     def order(self) -> int:
@@ -57,22 +58,12 @@ class SphericalHarmonics:
         """Of a coefficient."""
         return ORDERS[self.size][1]
 
-    @cached_property
-    def _fit(self) -> np.ndarray:
-        """(n, count) what each coefficient takes of each direction."""
-        return np.asarray(np.linalg.pinv(basis(self.layout.directions(), self.order)))
-
-    @cached_property
-    def ranges(self) -> np.ndarray:
-        """(n, 2) least of each coefficient, and a step of its code."""
-        least, most = np.minimum(self._fit, 0).sum(axis=1), np.maximum(self._fit, 0).sum(axis=1)
-        return np.stack([least, (most - least) / ((1 << self.bits) - 1)], axis=1)
-
     def encode(self, masks: np.ndarray) -> np.ndarray:
         """As `Code`."""
         words = np.zeros((len(masks), word_count(self.size)), np.uint32)
-        found = masks.astype(np.float64) @ self._fit.T
-        codes = np.rint((found - self.ranges[:, 0]) / self.ranges[:, 1]).astype(np.uint32)
+        found = masks @ fit(self.layout, self.order).T
+        codes = np.rint((found - self.ranges[:, 0]) / self.ranges[:, 1])
+        codes = np.clip(codes, 0, (1 << self.bits) - 1).astype(np.uint32)
         for k in range(codes.shape[1]):
             put(words, k * self.bits, self.bits, codes[:, k])
         return words
@@ -87,3 +78,22 @@ class SphericalHarmonics:
         values = self.ranges[:, 0] + codes * self.ranges[:, 1]
         functions = basis(towards, self.order)
         return np.asarray((functions @ values[..., None])[..., 0] if functions.ndim == 3 else values @ functions.T)
+
+    def tables(self) -> dict[str, np.ndarray]:
+        """`ranges`."""
+        return {"ranges": self.ranges}
+
+
+@cache
+def fit(layout: Hemisphere, order: int) -> np.ndarray:
+    """(n, count) what each coefficient takes of each direction."""
+    return np.asarray(np.linalg.pinv(basis(layout.directions(), order)))
+
+
+def fitted(layout: Hemisphere, size: int, masks: np.ndarray) -> SphericalHarmonics:
+    """With the ranges of a cloud's masks (M, count): what any mask could have is many times as much."""
+    order, bits = ORDERS[size]
+    found = masks @ fit(layout, order).T
+    least, most = found.min(axis=0), found.max(axis=0)
+    step = np.maximum((most - least) / ((1 << bits) - 1), 1e-6)
+    return SphericalHarmonics(layout, size, np.stack([least, step], axis=1))

@@ -7,8 +7,8 @@ from typing import Any, ClassVar, Literal
 
 from renderer.core.params import param
 from renderer.core.technique import Arrays
-from renderer.directional.codes.spherical_harmonics import SphericalHarmonics as Code
 from renderer.directional.self_shadowing import LAYOUT_DECLARATIONS, SelfShadowTechnique
+from renderer.directional.technique import SHADOW_CODE
 
 RANGES = """uniform vec2 self_shadow_ranges[
     SELF_SHADOW_SIZE == 5 ? 4 : (SELF_SHADOW_SIZE == 9 ? 9 : (SELF_SHADOW_SIZE == 17 ? 16 : 25))];"""
@@ -30,4 +30,4 @@ class SphericalHarmonics(SelfShadowTechnique):
 
     def constants(self, state: Any, baked: Mapping[str, Arrays]) -> dict[str, Any]:
         """The layout and the quantisers."""
-        return {**super().constants(state, baked), "self_shadow_ranges": Code(self.layout(state), self.size).ranges}
+        return {**super().constants(state, baked), "self_shadow_ranges": baked[SHADOW_CODE]["ranges"]}
