@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 from renderer.core.params import bake_arguments
 from renderer.core.technique import Bake
 from renderer.directional import cloud, visibility
-from renderer.directional.hemisphere import hemisphere_of
 from renderer.directional.shadow_hemispheres import bake_shadows
 from renderer.directional.subjects import subject_bake
 from renderer.world.sky import bake_sky
@@ -37,8 +36,7 @@ def shadows_bake(state: DirectionalState) -> Bake:
     """What each point sees of its own hemisphere."""
     inputs = (subject_bake(state.subject), cloud_bake(state), visibility_bake(state))
     rays = 0.6 * state.cloud.points * state.hemispheres.directions
-    layout = hemisphere_of(state.hemispheres.directions)
-    arguments = {"directions": layout.count, "azimuths": layout.azimuths, "elevations": layout.elevations}
+    arguments = bake_arguments(state.hemispheres)
     return Bake("shadows", bake_shadows, arguments, inputs, seconds=2 + rays / SHADOW_RAYS_A_SECOND)
 
 

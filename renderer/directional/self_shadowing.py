@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Hashable, Mapping
-from importlib import import_module
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from renderer.core.technique import Arrays, Bake
+from renderer.directional.bakes import shadows_bake
 from renderer.directional.codes.baking import bake_code
 from renderer.directional.hemisphere import Hemisphere, hemisphere_of
 from renderer.directional.technique import SHADOW_CODE, DirectionalTechnique
@@ -26,14 +26,14 @@ class SelfShadowTechnique(DirectionalTechnique):
 
     def bakes(self, state: Any) -> list[Bake]:
         """The words of all points."""
-        shadows = _shadows_of(state)
+        shadows = shadows_bake(state)
         given = self.model_dump(include={"kind", "size"})
-        arguments = {**given, "directions": int(shadows.arguments["directions"])}
+        arguments = {**given, "directions": state.hemispheres.directions}
         return [Bake(SHADOW_CODE, bake_code, arguments, (shadows,), seconds=1 + 6e-6 * state.cloud.points)]
 
     def layout(self, state: Any) -> Hemisphere:
         """Of the masks."""
-        return hemisphere_of(int(_shadows_of(state).arguments["directions"]))
+        return hemisphere_of(state.hemispheres.directions)
 
     def constants(self, state: Any, baked: Mapping[str, Arrays]) -> dict[str, Any]:
         """The layout of the masks."""
@@ -54,9 +54,3 @@ class BookTechnique(SelfShadowTechnique):
     def textures_of(self, gl: GL, baked: Mapping[str, Arrays]) -> dict[str, AnyTexture]:
         """The books."""
         return {"book": gl.texture2d(baked[SHADOW_CODE]["book"], filter="nearest")}
-
-
-def _shadows_of(state: Any) -> Bake:
-    # These name every technique's bakes, and so import them.
-    bake: Bake = import_module("renderer.directional.bakes").shadows_bake(state)
-    return bake
