@@ -97,10 +97,11 @@ class Preparer:
     async def _prepare(self, wish: Wish) -> None:
         """Prepare a wish, after what may be shown sooner."""
         soon = self._hub.session.coarse(wish.state)
-        if soon is None or self._hub.session.prepared(soon):
-            await self._follow(wish, wish)
-        elif await self._follow(wish, Wish(soon, wish.version, coarse=True)):
-            await self._follow(wish, wish)
+        if soon is not None and not self._hub.session.prepared(soon):
+            shown = await self._follow(wish, Wish(soon, wish.version, coarse=True))
+            if not shown:
+                return
+        await self._follow(wish, wish)
 
     async def _follow(self, wish: Wish, part: Wish) -> bool:
         """Prepare a wish or what stands for it; whether it is still wished for then."""

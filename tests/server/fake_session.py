@@ -156,6 +156,7 @@ class FakeSession:
 
     def describe(self, scene: str) -> dict[str, Any]:
         self._known(scene)
+        noon = self.state("fake", "noon").model_dump()
         return {
             "name": "fake",
             "title": "Fake",
@@ -163,7 +164,7 @@ class FakeSession:
             "schema": FakeState.model_json_schema(),
             "defaults": FakeState().model_dump(mode="json"),
             "slots": [],
-            "presets": {"noon": {"title": "Noon", "help": "High sun", "document": self.state("fake", "noon").model_dump()}},
+            "presets": {"noon": {"title": "Noon", "help": "High sun", "document": noon}},
         }
 
     def _known(self, scene: Any) -> None:

@@ -26,7 +26,3 @@ class PositionCorrected(DirectionalTechnique):
         0.8, label="Reach", help="How far from the ray a point may lie, in texels of the box's longest side.",
         unit="ratio", ge=0.1, le=8, step=0.1,
     )
-    close: float = param(
-        0.35, label="Close", help="How near the ray a point lies that ends the search, likewise.",
-        unit="ratio", ge=0, le=8, step=0.05,
-    )

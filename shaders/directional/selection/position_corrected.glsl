@@ -44,10 +44,10 @@ void selection_points(int face, vec3 place, vec3 to_eye, out uvec4 points, out v
     vec2 within = vec2(0.0, span); // where the surface must be
     points = uvec4(NO_POINT);
     weights = vec4(1.0, 0.0, 0.0, 0.0);
-    for (int n = 0; n < most && best > selection_close * texel; n++) {
+    for (int n = 0; n < 4 * SELECTION_STEPS || (n < most && points.x == NO_POINT); n++) {
         int k = n / SELECTION_STEPS;
         bool begins = n == k * SELECTION_STEPS;
-        depth = begins && points.x == NO_POINT ? 0.5 * span : depth;
+        depth = !begins ? depth : points.x == NO_POINT ? 0.5 * span : front;
         within = begins ? vec2(0.0, span) : within;
         int through = k < 4 ? face : other;
         int seen_from = k < 4 ? first[k] : second[k - 4];
