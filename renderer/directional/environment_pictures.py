@@ -66,7 +66,7 @@ def _panel(ways: np.ndarray, azimuth: float, elevation: float, width: float, hei
     before = np.maximum(ways @ middle, 1e-3)
     u, v = np.abs(ways @ right / before), np.abs(ways @ up / before)
     off = np.maximum(u - math.tan(math.radians(width)), v - math.tan(math.radians(height)))
-    return np.asarray(np.where(ways @ middle > 0, _soft(np.maximum(off, 0), 0.04), 0.0)[..., None])
+    return np.asarray(np.where(ways @ middle > 0, _soft(np.maximum(off, 0), 0.12), 0.0)[..., None])
 
 
 def studio() -> np.ndarray:
@@ -77,9 +77,9 @@ def studio() -> np.ndarray:
     floor = 0.22 * np.exp(-3 * np.abs(height + 0.75)) + 0.05
     picture = np.where(height < 0, floor + (room - floor) * np.exp(height * 12), room) * [1.0, 0.97, 0.93]
     for place, brightness, colour in (
-        ((130, 48, 24, 17), 9.0, (1.0, 0.93, 0.82)),
-        ((262, 22, 5, 34), 5.0, (0.75, 0.88, 1.0)),
-        ((20, 30, 26, 4), 4.0, (1.0, 0.98, 0.95)),
+        ((130, 48, 26, 18), 5.0, (1.0, 0.93, 0.82)),
+        ((262, 22, 7, 34), 3.0, (0.72, 0.87, 1.0)),
+        ((20, 30, 26, 5), 2.5, (1.0, 0.98, 0.95)),
     ):
         picture = picture + _panel(ways, *place) * (np.array(colour) * brightness)
     return np.asarray(picture)

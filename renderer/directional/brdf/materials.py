@@ -37,8 +37,8 @@ def hats(phi: np.ndarray) -> np.ndarray:
 
 
 def ramp(theta: np.ndarray, full: float) -> np.ndarray:
-    """0 at the normal, 1 at `full` degrees, 1/2 at the horizon, straight between."""
-    return np.asarray(np.interp(theta, np.radians([0.0, full, 90.0]), [0.0, 1.0, 0.5]))
+    """0 at the normal, 1 at `full` degrees, 0.7 at the horizon, straight between."""
+    return np.asarray(np.interp(theta, np.radians([0.0, full, 90.0]), [0.0, 1.0, 0.7]))
 
 
 class Validation(Model):
@@ -52,7 +52,7 @@ class Validation(Model):
         cost="bake",
         source="Porquet 2005, section 3.3.2.2; errata 003-4",
     )
-    reflectance: float = param(0.8, label="Reflectance", help="Of each colour.", unit="ratio", cost="bake", ge=0, le=1)
+    reflectance: float = param(0.4, label="Reflectance", help="Of each colour.", unit="ratio", cost="bake", ge=0, le=1)
 
     def colours(self, place: tuple[np.ndarray, ...]) -> np.ndarray:
         """The rule, (..., 3) [sr-1], which interpolation between the table's nodes keeps everywhere.
@@ -67,7 +67,7 @@ class Validation(Model):
         """
         theta_o, phi_o, theta_l, phi_l = place
         white = 1 / 3
-        seen, lit = ramp(theta_o, 30.0)[..., None], ramp(theta_l, 45.0)[..., None]
+        seen, lit = ramp(theta_o, 15.0)[..., None], ramp(theta_l, 30.0)[..., None]
         turned = hats(phi_l)
         if self.azimuths == "both":
             back = sum(hats(phi_o)[..., j, None] * np.roll(turned, -j, axis=-1) for j in range(3))
