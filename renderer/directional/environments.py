@@ -18,6 +18,7 @@ from renderer.core.params import Model, bake_arguments, param, radians_of
 from renderer.core.technique import Arrays, Bake
 from renderer.directional.environment_light import harmonics_of, sky_harmonics, smoothed
 from renderer.directional.environment_pictures import PICTURES, ROWS, resampled
+from renderer.world.atmosphere import bilinear
 from renderer.world.image_files import load_image
 from renderer.world.sky import SkyNow, sky_radiance
 
@@ -141,6 +142,35 @@ def image_of(environment: AnyEnvironment, baked: Mapping[str, Arrays], now: SkyN
 def rotation_of(environment: AnyEnvironment) -> float:
     """By which a picture is turned clockwise about the zenith [rad]."""
     return 0.0 if environment.kind == "sky" else radians_of(environment, "rotation")
+
+
+def background_of(
+    state: Any, baked: Mapping[str, Arrays], now: SkyNow, sun: np.ndarray
+) -> Callable[[np.ndarray], np.ndarray]:
+    """Radiance (..., 3) [W m-2 sr-1] behind the subject by unit directions (..., 3), without the sun's disc."""
+    if not shows_picture(state):
+        return lambda ways: sky_radiance(now, sun, ways)
+    image, turn = image_of(state.environment, baked, now, sun), rotation_of(state.environment)
+    rows, columns = image.shape[:2]
+    closed = np.concatenate([image[:, -1:], image, image[:, :1]], axis=1)
+
+    def behind(ways: np.ndarray) -> np.ndarray:
+        across = np.mod((np.arctan2(ways[..., 0], ways[..., 1]) - turn) / (2 * math.pi), 1.0) * columns
+        down = np.arccos(np.clip(ways[..., 2], -1, 1)) / math.pi * rows
+        return bilinear(closed, np.clip(down - 0.5, 0, rows - 1), across + 0.5)
+
+    return behind
+
+
+def shows_picture(state: Any) -> bool:
+    """Whether a picture stands behind the subject: where the light takes it, and the background is no flat one."""
+    return state.environment.kind != "sky" and state.light.kind in ("environment", "combined")
+
+
+def environment_macros(state: Any) -> dict[str, str]:
+    """What of the surroundings is compiled in."""
+    sky, behind = state.environment.kind == "sky", shows_picture(state)
+    return {"ENVIRONMENT_SKY": str(int(sky)), "ENVIRONMENT_BEHIND": str(int(behind))}
 
 
 DECLARATIONS = """uniform vec4 environment_said;     // cosine and sine of the rotation, radiance of 1, coarsest level

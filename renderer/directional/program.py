@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 
 from renderer.core.params import defines, uniform_declarations
 from renderer.core.registry import glsl_file
+from renderer.directional.environments import DECLARATIONS as SURROUNDINGS_DECLARATIONS
+from renderer.directional.environments import environment_macros
 from renderer.directional.hemisphere import hemisphere_of
 from renderer.directional.lamp import Lamp
 from renderer.gl.source import Source, assemble
@@ -104,6 +106,8 @@ void main() {
 DRAW_DECLARATIONS = """uniform sampler2D shaded;
 uniform int face_strips[6];       // strip of each face, or -1"""
 
+BEHIND_DECLARATIONS = "uniform sampler2D light_environment;\n" + SURROUNDINGS_DECLARATIONS
+
 DRAW_BODY = """layout(location = 0) out vec4 radiance;
 void main() {
     vec3 origin, direction;
@@ -117,7 +121,11 @@ void main() {
     at = clamp(at, vec2(0.5), vec2(float(TEXELS) - 0.5)) + vec2(float(max(strip, 0) * TEXELS), 0.0);
     vec4 light = strip < 0 ? vec4(0.0) : texture(shaded, at / vec2(textureSize(shaded, 0)));
 #endif
+#if BACKGROUND_SKY == 1 && ENVIRONMENT_BEHIND == 1
+    radiance = vec4(light.rgb + (1.0 - light.a) * environment_radiance(direction, 0.0), 1.0);
+#else
     radiance = before_sky(light.rgb, light.a, direction);
+#endif
 }"""
 
 FIRST = (
@@ -175,7 +183,7 @@ def variant_of(state: DirectionalState, shadow_blocks: int) -> Variant:
         chosen.count,
         chosen.per_pixel,
         shadow_blocks,
-        (*defines(state.lamp, "lamp").items(), ("ENVIRONMENT_SKY", str(int(state.environment.kind == "sky")))),
+        (*defines(state.lamp, "lamp").items(), *environment_macros(state).items()),
     )
 
 
@@ -192,7 +200,10 @@ def shade_source(state: DirectionalState, variant: Variant) -> Source:
 
 def draw_source(variant: Variant) -> Source:
     """The fragment stage that draws the lit faces before the background."""
-    return composed((), variant, ("lib/sky.glsl", "lib/backdrop.glsl"), DRAW_BODY, DRAW_DECLARATIONS)
+    behind = dict(variant.lights)["ENVIRONMENT_BEHIND"] == "1"
+    files = ("lib/sky.glsl", "lib/backdrop.glsl", *(("directional/surroundings.glsl",) if behind else ()))
+    more = "\n".join([DRAW_DECLARATIONS, BEHIND_DECLARATIONS if behind else ""])
+    return composed((), variant, files, DRAW_BODY, more)
 
 
 @functools.lru_cache(maxsize=256)

@@ -80,7 +80,8 @@ class DirectionalRenderer:
         linear = getattr(state.selection, "magnification", "nearest") == "linear"
         atlas.shaded.filter = (moderngl.LINEAR, moderngl.LINEAR) if linear else (moderngl.NEAREST, moderngl.NEAREST)
         self.atlas = atlas
-        return draw_source(variant), {**sky, "shaded": atlas.shaded}, values
+        behind = {name: held for name, held in textures.items() if name == "light_environment"}
+        return draw_source(variant), {**sky, **behind, "shaded": atlas.shaded}, values
 
     def draw(self, prepared: Prepared) -> None:
         """Put a prepared sample before the background, into the bound framebuffer."""

@@ -5,9 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from renderer.core.technique import Arrays
+from renderer.directional.environments import background_of
 from renderer.directional.light_world import light_world
-from renderer.world.sky import sky_for, sky_radiance
+from renderer.world.sky import sky_for
 from renderer.world.sun import angles, direction
 
 if TYPE_CHECKING:
@@ -26,7 +29,7 @@ def world_arrays(state: DirectionalState, baked: Mapping[str, Arrays]) -> dict[s
 
     Returns:
         By name: `vertices`, `faces`, `normals` of corners, `colour` of faces and `two_sided` of the mesh; `sun`,
-        `e_sun`, `e_sky` and `background` of the sky; and `light`, whose `parts` are models of reflection,
+        `e_sun`, `e_sky` and the `background`; and `light`, whose `parts` are models of reflection,
         with the `lamp`, or None.
     """
     now, sun = sky_for(baked["sky"], angles(state.sun)[1]), direction(state.sun)
@@ -38,5 +41,5 @@ def world_arrays(state: DirectionalState, baked: Mapping[str, Arrays]) -> dict[s
         "e_sun": tuple(float(v) for v in now.sun_irradiance),
         "e_sky": tuple(float(v) for v in now.sky_irradiance),
         "light": light_world(state, baked),
-        "background": lambda directions: sky_radiance(now, sun, directions),
+        "background": background_of(state, baked, now, np.asarray(sun)),
     }

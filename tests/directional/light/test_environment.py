@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -19,15 +20,18 @@ from renderer.directional.environments import (
     Own,
     SceneSky,
     Studio,
+    background_of,
     bake_environment,
     environment_bake,
+    environment_macros,
     image_of,
     user_picture,
 )
 from renderer.directional.light.environment import EnvironmentMap
+from renderer.directional.light.phong import Phong
 from renderer.gl.thread import GLThread
 from renderer.world.image import save_image
-from renderer.world.sky import sky_for
+from renderer.world.sky import sky_for, sky_radiance
 from renderer.world.sun import SunDirection, direction
 from tests.directional.light.points import COLOUR, SHADE, kept, random_directions, shaded, sky_tables
 
@@ -98,7 +102,7 @@ def turned(ways: np.ndarray, turn: float) -> np.ndarray:
 
 
 def _state(environment: Any) -> Any:
-    return type("State", (), {"environment": environment, "sun": SUN})()
+    return SimpleNamespace(environment=environment, sun=SUN)
 
 
 def drawn(thread: GLThread, baked: Mapping[str, Any], technique: EnvironmentMap, environment: Any) -> tuple:
@@ -139,6 +143,19 @@ def test_matt_and_mirrored_light_of_a_picture(thread: GLThread, baked: Mapping[s
     assert off.max() < 8
 
 
+def test_what_stands_behind_is_what_is_mirrored(baked: Mapping[str, Any]) -> None:
+    """A picture where the light takes one, the sky where it does not."""
+    now, sun, ways = sky_for(baked["sky"], math.radians(35.0)), np.asarray(direction(SUN)), everywhere(300, 8)
+    state = SimpleNamespace(environment=Studio(rotation=50.0, level=3.0), light=EnvironmentMap(), sun=SUN)
+    image = np.asarray(baked["environment"]["image"], np.float64) * 3.0
+    seen = background_of(state, baked, now, sun)(ways)
+    np.testing.assert_allclose(seen, looked_up(image, ways, math.radians(50.0)), rtol=1e-9)
+    assert environment_macros(state) == {"ENVIRONMENT_SKY": "0", "ENVIRONMENT_BEHIND": "1"}
+    state.light = Phong()
+    np.testing.assert_allclose(background_of(state, baked, now, sun)(ways), sky_radiance(now, sun, ways))
+    assert environment_macros(state)["ENVIRONMENT_BEHIND"] == "0"
+
+
 def test_matt_and_mirrored_light_of_the_sky(thread: GLThread, baked: Mapping[str, Any]) -> None:
     technique = EnvironmentMap(diffuse=0.5, specular=0.5)
     found, normals, to_eye, openness = drawn(thread, baked, technique, SceneSky(level=2.0))
@@ -151,7 +168,6 @@ def test_matt_and_mirrored_light_of_the_sky(thread: GLThread, baked: Mapping[str
 
 
 @pytest.mark.parametrize(("right", "wrong"), [
-    ("direction.x * turn.x - direction.y * turn.y", "direction.x * turn.x + direction.y * turn.y"),
     ("(surfel.openness / ENVIRONMENT_PI)", "surfel.openness"),
     ("2.0 * dot(to_eye, surfel.normal) * surfel.normal - to_eye", "to_eye"),
     ("across * (five - 1.0) * environment_harmonics[15]", "across * (five - 3.0) * environment_harmonics[15]"),
@@ -160,6 +176,12 @@ def test_spoiled_surroundings_are_found(
     thread: GLThread, baked: Mapping[str, Any], spoil: Callable, right: str, wrong: str
 ) -> None:
     with spoil("directional/environment_light.glsl", right, wrong), pytest.raises(AssertionError):
+        test_matt_and_mirrored_light_of_a_picture(thread, baked, 77.0)
+
+
+def test_a_picture_turned_the_other_way_is_found(thread: GLThread, baked: Mapping[str, Any], spoil: Callable) -> None:
+    right, wrong = "direction.x * turn.x - direction.y * turn.y", "direction.x * turn.x + direction.y * turn.y"
+    with spoil("directional/surroundings.glsl", right, wrong), pytest.raises(AssertionError):
         test_matt_and_mirrored_light_of_a_picture(thread, baked, 77.0)
 
 
