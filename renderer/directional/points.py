@@ -9,7 +9,7 @@ from renderer.directional.cloud import rounded_positions
 from renderer.directional.frames import encoded
 from renderer.world.image import srgb_encode
 
-ROW = 4096
+ROW = 2048
 """Points a row of texels: `SURFEL_ROW` in shaders/directional/surfel.glsl."""
 
 

@@ -6,7 +6,7 @@
 // Deviation: the thesis keeps 15 bytes, of which 3 for a position of 1 byte an axis; here 16 bytes and the code beside.
 
 const uint NO_POINT = 0xFFFFFFFFu;
-const int SURFEL_ROW = 4096; // points a row of texels
+const int SURFEL_ROW = 2048; // points a row of texels: eight of a code are 16384, which every OpenGL has
 
 struct Surfel {
     uint index;
