@@ -49,6 +49,7 @@ def add(commands: Any) -> None:
     command.add_argument("--kinds", action="store_true", help="of shadow instead: each technique in views of one kind")
     command.add_argument("--slab", action="store_true", help="of light within a plane cloud instead (clouds)")
     command.add_argument("--radiosity", action="store_true", help="of light between ground and clouds instead (clouds)")
+    command.add_argument("--memory", action="store_true", help="of tables and their precomputation (directional)")
     command.add_argument("--rays", type=int, default=4096, help="of each point of its truth (with --radiosity)")
     command.add_argument("--photons", type=int, default=PHOTONS, help="of each slab's truth (with --slab)")
     command.add_argument("--moving", type=int, default=64, help="side of pictures whose sun moves (with --kinds), px")
@@ -128,6 +129,10 @@ def study(given: argparse.Namespace) -> int:
         return cli_radiosity.study(given)
     if given.slab:
         return slab(given)
+    if given.memory:
+        from server import cli_directional
+
+        return cli_directional.memory(given)
     with Session() as session:
         scene = session.describe(given.scene)
         if not given.slots and not {*study_plan.SLOTS} <= {slot["name"] for slot in scene["slots"]}:

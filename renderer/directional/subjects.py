@@ -79,4 +79,4 @@ def box_of(vertices: np.ndarray, faces: np.ndarray) -> np.ndarray:
 
 def subject_bake(subject: AnySubject) -> Bake:
     """The subject's mesh."""
-    return Bake("subject", bake_subject, bake_arguments(subject), seconds=2)
+    return Bake("subject", bake_subject, bake_arguments(subject), version=2, seconds=3)
