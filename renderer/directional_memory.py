@@ -19,6 +19,7 @@ import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
+from renderer import directional_code_study as code_study
 from renderer.core.technique import Arrays, Bake
 from renderer.directional.casting import NONE, Caster, face_frame, face_middles
 from renderer.directional.cloud import Cloud, bake_cloud, cloud_bake, rounded_positions
@@ -78,7 +79,7 @@ def run(folder: Path, tell: Tell) -> str:
 
 
 def tables(kind: str, points: int = WHOLE[-1][2], rays: int = RAYS) -> list[dict[str, Any]]:
-    """Lines of one subject: `table` for each number of texels and directions, `positions` for each number of bits."""
+    """Lines of one subject: `table` for each number of texels and directions, `codes`, and `positions` by bits."""
     subject = bake_subject({"kind": kind}, {}, _silent)
     cloud = bake_cloud({"points": points}, {"subject": subject}, _silent)
     caster = Caster(subject, cloud)
@@ -87,6 +88,7 @@ def tables(kind: str, points: int = WHOLE[-1][2], rays: int = RAYS) -> list[dict
         for directions in DIRECTIONS:
             lines.append({"part": "table", "subject": kind, "texels": texels, "directions": directions,
                           **sampled(caster, texels, directions, rays)})
+    lines += code_study.codes(kind, caster, cloud)
     extent = caster.box[1] - caster.box[0]
     for bits in BITS:
         off = rounded_positions(cloud["position"].astype(float), caster.box, bits) - cloud["position"]
@@ -189,7 +191,7 @@ def table(lines: list[dict[str, Any]]) -> str:
     ]
     for line in _of(lines, "table"):
         text.append(
-            f"| {line['subject']} | {line['texels']} | {line['directions']:,} | {line['share']:.0%} | "
+            f"| {line['subject']} | {line['texels']} | {line['directions']:,} | {line['share']:.1%} | "
             f"{line['bytes'] / 1e6:,.1f} MB | {line['bits']:.2f} | 1 / {line['raw_ratio']:.1f} | "
             f"{line['cpu_s']:,.1f} s | {line['unpack_ms']:.2f} ms | {line['seen']:.0%} |"
         )
@@ -203,6 +205,8 @@ def table(lines: list[dict[str, Any]]) -> str:
             f"{line['cloud_cpu_s']:.1f} s | {line['faces_cpu_s']:.1f} s | {line['bytes'] / 1e6:.1f} MB | "
             f"{line['used']:.0%} | {line['layer_ms']:.2f} ms | {line['most_memory_bytes'] / 1e6:,.0f} MB |"
         )
+    text += ["", "Other ways to write the same numbers, on some directions of three faces:", ""]
+    text += code_study.table(_of(lines, "codes"))
     text += ["", "Error of stored positions, root of the mean square:", "",
              "| subject | bits a coordinate | error | of a texel at 128 | of the distance between points |",
              "| --- | ---: | ---: | ---: | ---: |"]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from renderer import directional_code_study as code_study
 from renderer import directional_memory as study
 from renderer.directional.casting import Caster
 from renderer.directional.cloud import bake_cloud
@@ -21,6 +22,7 @@ def small(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(study, "TEXELS", (16, 32))
     monkeypatch.setattr(study, "DIRECTIONS", (33, 129))
     monkeypatch.setattr(study, "RAYS", 100_000)
+    monkeypatch.setattr(code_study, "SIZES", ((32, 33),))
 
 
 @pytest.mark.usefixtures("small")
@@ -44,6 +46,10 @@ def test_the_study_leaves_its_files(tmp_path) -> None:
     assert all((tmp_path / name).stat().st_size > 0 for name in study.FILES)
     rows = [line for line in text.splitlines() if line.startswith("| knot")]
     assert len(rows) == 4 + 2 + 4
+    used = float(next(line for line in text.splitlines() if "in use |" in line and "Zstandard" in line).split("|")[2])
+    # The same steps, but for the planes of zeros that are left out.
+    same = float(next(line for line in text.splitlines() if "by zlib" in line).split("|")[2])
+    assert used == pytest.approx(same, rel=0.1)
     errors = [float(row.split("|")[3].split()[0]) for row in rows[-4:]]
     # Four bits more are a sixteenth of the error, but for what single precision keeps of the places themselves.
     assert np.array(errors[:2]) / errors[1] == pytest.approx([4, 1], rel=0.1)

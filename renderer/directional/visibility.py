@@ -19,7 +19,7 @@ from renderer.directional.index_code import packed, unpacked
 
 FACES = 6
 
-RAYS_A_SECOND = 2.5e6
+RAYS_A_SECOND = 4e6
 """About how many are cast and packed."""
 
 WORTH_KEEPING = 10.0
