@@ -19,4 +19,4 @@ class Directional(ShellsTechnique):
     levels: ClassVar[str] = "directional"
 
     kind: Literal["directional"] = "directional"
-    bias: float = param(-2.0, label="Bias", help="Levels coarser than a pixel asks for.", ge=-4, le=4)
+    bias: float = param(-3.0, label="Bias", help="Levels coarser than a pixel asks for.", ge=-4, le=4)

@@ -23,4 +23,4 @@ class Mipmap(ShellsTechnique):
         cost="host",
         help="How they are made: opacities put together as in the thesis, what the light from above meets, or means.",
     )
-    bias: float = param(-2.0, label="Bias", help="Levels coarser than a pixel asks for.", ge=-4, le=4)
+    bias: float = param(-3.0, label="Bias", help="Levels coarser than a pixel asks for.", ge=-4, le=4)
