@@ -29,7 +29,7 @@ def add(commands: Any) -> None:
 def run(given: argparse.Namespace) -> int:
     """Measure, and leave raw numbers, a table and a chart."""
     from renderer import far_study, steadying  # charts take a second to import, which no other command should pay
-    from renderer.study.sweep import provenance
+    from renderer.benching import provenance
 
     times = times_of(given.times) or far_study.TIMES
     techniques = given.techniques or far_study.TECHNIQUES
