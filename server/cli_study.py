@@ -25,7 +25,7 @@ KINDS = "kinds"
 """Folder of the table of shadow kinds."""
 
 FRAMES = 30
-"""Timed frames of each technique, from which medians and 95th percentiles are stated."""
+"""Timed frames of each technique."""
 
 PHOTONS = 400_000
 """Photons of each slab of a stated study."""
@@ -50,6 +50,8 @@ def add(commands: Any) -> None:
     command.add_argument("--slab", action="store_true", help="of light within a plane cloud instead (clouds)")
     command.add_argument("--radiosity", action="store_true", help="of light between ground and clouds instead (clouds)")
     command.add_argument("--memory", action="store_true", help="of tables and their precomputation (directional)")
+    command.add_argument("--faces", action="store_true", help="of faces, selection and codes instead (directional)")
+    command.add_argument("--views", type=int, default=24, help="from which the subject is seen (with --faces)")
     command.add_argument("--rays", type=int, default=4096, help="of each point of its truth (with --radiosity)")
     command.add_argument("--photons", type=int, default=PHOTONS, help="of each slab's truth (with --slab)")
     command.add_argument("--moving", type=int, default=64, help="side of pictures whose sun moves (with --kinds), px")
@@ -125,14 +127,12 @@ def study(given: argparse.Namespace) -> int:
         return kinds(given)
     if given.radiosity:
         from server import cli_radiosity
-
         return cli_radiosity.study(given)
     if given.slab:
         return slab(given)
-    if given.memory:
+    if given.memory or given.faces:
         from server import cli_directional
-
-        return cli_directional.memory(given)
+        return (cli_directional.memory if given.memory else cli_directional.faces)(given)
     with Session() as session:
         scene = session.describe(given.scene)
         if not given.slots and not {*study_plan.SLOTS} <= {slot["name"] for slot in scene["slots"]}:

@@ -1,0 +1,288 @@
+"""The directional textures held to their reference from many sides in many suns, and their silhouettes apart.
+
+Every result is a line that a later call finds again, so that a study that was stopped goes on where it was. Rounds go
+before settings: whenever it stops, every setting has been seen from all sides, if not in every sun.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+import renderer
+from renderer.comparing import converged, reference, truth
+from renderer.core.baking import bake_key
+from renderer.core.cache import key_of
+from renderer.core.registry import SHADERS, phenomenon
+from renderer.study.metrics import flip
+from renderer.study.silhouettes import apart, away
+from renderer.study.sweep import Drawn, append, compare, provenance, read
+from renderer.study_plan import SUNS, light_of
+from renderer.truth import code_of, truth_bake
+
+if TYPE_CHECKING:
+    from renderer.session import Session
+    from renderer.world.state import SceneState
+
+Tell = Callable[[float, str], None]
+Lines = list[dict[str, Any]]
+
+SCENE = "directional"
+VIEWS, SUNS_USED = 24, 8
+
+LOWEST, HIGHEST = -15.0, 75.0
+"""Elevations [deg] that the views lie between, evenly by area."""
+
+FIELD_OF_VIEW = 30.0
+
+SIZE = 96
+"""Side of the pictures [px]."""
+
+BOX = 400
+"""Pixels that the box's longest side takes where silhouettes are measured."""
+
+AWAY = 0.01
+"""How far a pixel is away from the silhouette at least, in longest sides of the box: the 4 pixels of 400 within which
+a silhouette is asked to lie."""
+
+
+@dataclass(frozen=True)
+class Setting:
+    """What is varied.
+
+    Attributes:
+        texels, directions: of the faces. selection, code: techniques. shadow_directions: of a point's hemisphere.
+        size: bytes of the code, where it has a choice; 0 for its own. blend: between directions of light; None for the
+            code's own. points: of the cloud.
+    """
+
+    texels: int = 128
+    directions: int = 513
+    selection: str = "nearest"
+    code: str = "bits"
+    shadow_directions: int = 129
+    size: int = 0
+    blend: bool | None = None
+    points: int = 400_000
+
+    def sets(self) -> dict[str, Any]:
+        """What differs from a preset, by path."""
+        code: dict[str, Any] = {"kind": self.code} | ({"size": self.size} if self.size else {})
+        code |= {} if self.blend is None else {"blend": self.blend}
+        return {
+            "cloud.points": self.points,
+            "visibility.texels": self.texels,
+            "visibility.directions": self.directions,
+            "hemispheres.directions": self.shadow_directions,
+            "selection": {"kind": self.selection},
+            "self_shadow": code,
+        }
+
+
+SELECTIONS = ("nearest", "blended", "position_corrected")
+FACES = tuple(
+    Setting(texels, directions, selection)
+    for directions in (129, 513, 2049)
+    for texels in (64, 128, 256)
+    for selection in SELECTIONS
+)
+"""What the faces know, and how a point is chosen."""
+
+OUTLINES = tuple(
+    replace(setting, code="none", shadow_directions=33, points=1_500_000 if setting.texels == 256 else 400_000)
+    for setting in (*FACES[-1:], *FACES[:-1])
+)
+"""The same for silhouettes, which no shadow changes; the one that most is asked of first."""
+
+BASE = Setting(128, 513, "position_corrected")
+
+CODES = (
+    *(replace(BASE, code=code) for code in ("none", "bits", "exact_harmonics", "chosen")),
+    *(
+        replace(BASE, code=code, size=size)
+        for code, sizes in (
+            ("harmonics", (5, 9, 17, 33)),
+            ("spherical_harmonics", (5, 9, 17, 33)),
+            ("horizon_ring", (5, 9, 17)),
+            ("codebook", (5, 9)),
+        )
+        for size in sizes
+    ),
+    *(replace(BASE, shadow_directions=count, blend=blend) for count in (33, 129, 513) for blend in (False, True)),
+)
+"""What a point knows of its shadow."""
+
+
+def cameras(box: np.ndarray) -> tuple[dict[str, Any], ...]:
+    """Views of a box (2, 3) [m] from all sides, by the golden angle: its ball fills the picture."""
+    middle, diagonal = box.mean(axis=0), float(np.linalg.norm(box[1] - box[0]))
+    distance = diagonal / 2 / math.sin(math.radians(FIELD_OF_VIEW / 2))
+    heights = np.interp((np.arange(VIEWS) + 0.5) / VIEWS, [0, 1], np.sin(np.radians([LOWEST, HIGHEST])))
+    golden = 180 * (3 - math.sqrt(5))
+    return tuple(
+        {
+            "kind": "orbit",
+            "target": [round(float(v), 6) for v in middle],
+            "distance": round(distance, 6),
+            "azimuth": round(number * golden % 360, 3),
+            "elevation": round(math.degrees(math.asin(height)), 3),
+            "field_of_view": FIELD_OF_VIEW,
+        }
+        for number, height in enumerate(heights)
+    )
+
+
+def pairs(views: int, suns: int) -> Iterator[list[tuple[int, str]]]:
+    """Rounds of views and suns: each has every view once, and all of them every pair."""
+    names = tuple(SUNS)[:suns]
+    for turn in range(suns):
+        yield [(view, names[(view + turn) % suns]) for view in range(views)]
+
+
+@dataclass
+class Stage:
+    """A preset from all sides.
+
+    Attributes:
+        session: draws, bakes and caches. preset: of the scene. results: lines that are kept. views, suns: how many.
+    """
+
+    session: Session
+    preset: str
+    results: Path
+    views: int = VIEWS
+    suns: int = SUNS_USED
+
+    def __post_init__(self) -> None:
+        """Find the box, which the views are about."""
+        state: Any = self.session.state(SCENE, self.preset)
+        subject = next(bake for bake in phenomenon(SCENE).bakes(state) if bake.name == "subject")
+        self.box = np.asarray(self.session.compute(subject)["box"], np.float64)
+        self.cameras = cameras(self.box)
+        self.machine = provenance(self.session.gl.info.renderer)
+        here = Path(renderer.__path__[0])
+        self.code = code_of(SHADERS / SCENE, SHADERS / "lib", here / SCENE, here / "study")
+        self.known = {line["key"]: line for line in read(self.results)}
+
+    @property
+    def longest(self) -> float:
+        """The box's longest side over its diagonal."""
+        sides = self.box[1] - self.box[0]
+        return float(sides.max() / np.linalg.norm(sides))
+
+    def state(self, setting: Setting, view: int, sun: str) -> SceneState:
+        """The document of a case."""
+        sets = {**setting.sets(), **light_of(sun), "camera": self.cameras[view]}
+        exposure = sets.pop("exposure")
+        return self.session.state(SCENE, self.preset, {**sets, "view.exposure": exposure})
+
+    def measured(self, part: str, setting: Setting, view: int, sun: str, size: int, measure: Measure) -> dict[str, Any]:
+        """The line of a case, measured where there is none."""
+        state = self.state(setting, view, sun)
+        bakes = [bake_key(bake) for bake in phenomenon(SCENE).bakes(state)]
+        answer = bake_key(truth_bake(state, size, size))
+        key = key_of(part, size, self.code, bakes, answer, state.model_dump(mode="json"))
+        if key not in self.known:
+            self.known[key] = {
+                "key": key, "part": part, "preset": self.preset, "view": view, "sun": sun, **asdict(setting),
+                **measure(self.session, state, size), "machine": self.machine, "when": int(time.time()),
+            }  # fmt: skip
+            append(self.results, self.known[key])
+        return self.known[key]
+
+    def swept(self, part: str, settings: Sequence[Setting], tell: Tell) -> Lines:
+        """Lines of settings over all views and suns."""
+        found: Lines = []
+        turns = list(pairs(self.views, self.suns))
+        total = len(turns) * len(settings) * self.views
+        for turn in turns:
+            for setting in settings:
+                for view, sun in turn:
+                    tell(len(found) / total, f"{setting.texels} texels, {setting.directions} directions, "
+                         f"{setting.selection}, {setting.code}: view {view + 1}")
+                    found.append(self.measured(part, setting, view, sun, SIZE, self._picture))
+        return found
+
+    def _picture(self, session: Session, state: SceneState, size: int) -> dict[str, Any]:
+        picture, right = drawn(session, state, size)
+        mask = away(right.linear[..., 3], AWAY * self.longest * size)
+        whole = compare(picture, right)
+        return {
+            **{name: whole[name] for name in ("relative_rmse", "flip_mean", "flip_p95", "reference_standard_error")},
+            **within(picture.linear, right.linear, mask),
+        }
+
+    def outlines(self, settings: Sequence[Setting], tell: Tell) -> Lines:
+        """Lines of how far silhouettes lie from the true ones, the box's longest side `BOX` pixels long."""
+        found: Lines = []
+        size = math.ceil(BOX / self.longest)
+        for number, setting in enumerate(settings):
+            for view in range(self.views):
+                tell((number * self.views + view) / len(settings) / self.views, f"outline {view + 1} of {setting}")
+                sun = next(iter(SUNS))
+                found.append(self.measured("silhouette", setting, view, sun, size, _outline))
+        return found
+
+
+Measure = Callable[["Session", "SceneState", int], Mapping[str, Any]]
+
+
+def drawn(session: Session, state: SceneState, size: int) -> tuple[Drawn, Drawn]:
+    """A state's converged picture, and its reference."""
+    found = truth(session, state, size, size)
+    return converged(session, state, size, size), reference(found, state.view, session.exposure_ev(state))
+
+
+def within(picture: np.ndarray, right: np.ndarray, mask: np.ndarray) -> dict[str, float | None]:
+    """Relative RMSE over some pixels, `away`, and what `share` of the picture they are; None where none has light."""
+    off = ((picture[..., :3] - right[..., :3]) ** 2).mean(axis=-1)
+    level = float(right[mask][:, :3].mean()) if mask.any() else 0.0
+    if level <= 0:
+        return {"away": None, "share": 0.0}
+    return {"away": float(np.sqrt(off[mask].mean())) / level, "share": float(mask.mean())}
+
+
+def _outline(session: Session, state: SceneState, size: int) -> dict[str, Any]:
+    picture, right = drawn(session, state, size)
+    return asdict(apart(picture.linear[..., 3], right.linear[..., 3]))
+
+
+def finer(stage: Stage, tell: Tell) -> Lines:
+    """129 against 513 directions of a point's hemisphere: how far the two pictures are apart, and each from the truth.
+
+    Returns:
+        Lines with FLIP between the two (`between_mean`, `between_p95`), their relative RMSE `between`, and `coarse` and
+        `fine`, either's relative RMSE to the reference away from silhouettes.
+    """
+    found = []
+    fine, coarse = replace(BASE, shadow_directions=513), BASE
+    turns = list(pairs(stage.views, stage.suns))
+
+    def measure(session: Session, state: SceneState, size: int) -> dict[str, Any]:
+        other: Any = session.state(SCENE, document={**state.model_dump(mode="json"), **_shadows(coarse)})
+        (few, right), (many, _) = drawn(session, other, size), drawn(session, state, size)
+        mask = away(right.linear[..., 3], AWAY * stage.longest * size)
+        seen = flip(few.rgb8, many.rgb8)
+        level = float(right.linear[..., :3].mean())
+        apart_ = float(np.sqrt(np.mean((few.linear[..., :3] - many.linear[..., :3]) ** 2))) / level
+        return {
+            "between": apart_, "between_mean": seen.mean, "between_p95": seen.p95,
+            "coarse": within(few.linear, right.linear, mask)["away"],
+            "fine": within(many.linear, right.linear, mask)["away"],
+        }  # fmt: skip
+
+    for number, turn in enumerate(turns):
+        for view, sun in turn:
+            tell((number * stage.views + view) / len(turns) / stage.views, f"129 against 513, view {view + 1}")
+            found.append(stage.measured("finer", fine, view, sun, SIZE, measure))
+    return found
+
+
+def _shadows(setting: Setting) -> dict[str, Any]:
+    return {"hemispheres": {"directions": setting.shadow_directions}}
