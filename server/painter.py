@@ -195,7 +195,7 @@ class Painter:
         if task.coarse:
             self._deliver(task, frame, self._moving_codec, MOVING_QUALITY)
         elif frame.converged and not preview:
-            pane.final = task.target if task.key[0] == pane.serial else pane.final
+            pane.final = pane.final if task.overtaken else task.target
             self._deliver(task, frame, self._final_codec, RESTING_QUALITY)
         elif first or frame.samples >= 2 * pane.sent:
             self._deliver(task, frame, self._moving_codec, RESTING_QUALITY)
@@ -230,7 +230,7 @@ class Painter:
 
     def _deliver(self, task: Task, frame: facade.Frame, codec: Codec, quality: int) -> None:
         """Encode and send a picture beside the drawing of the next one, in order."""
-        if task.key[0] == task.pane.serial:  # else it stood for what has come meanwhile
+        if not task.overtaken:
             task.pane.shown, task.pane.sent = task.target, frame.samples
         self._sequence += 1
         self._unacknowledged.add(self._sequence)

@@ -59,3 +59,8 @@ class Task:
     key: Key
     target: Key
     coarse: bool
+
+    @property
+    def overtaken(self) -> bool:
+        """Whether the state it shows stood for a finer one of the same version, which has come meanwhile."""
+        return self.target[0] == self.pane.version and self.key[0] != self.pane.serial

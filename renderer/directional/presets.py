@@ -2,12 +2,137 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from renderer.core.technique import Preset
 
+
+def _camera(distance: float, azimuth: float, elevation: float, height: float) -> dict[str, Any]:
+    return {
+        "kind": "orbit",
+        "target": [0, 0, height],
+        "distance": distance,
+        "azimuth": azimuth,
+        "elevation": elevation,
+        "field_of_view": 30,
+    }
+
+
+def _sun(azimuth: float, elevation: float) -> dict[str, Any]:
+    return {"kind": "direction", "azimuth": azimuth, "elevation": elevation}
+
+
+_CORRECTED = {"kind": "position_corrected"}
+
 PRESETS = {
+    "teapot": Preset(
+        "Teapot",
+        "Painted porcelain in the sun, by Phong's model.",
+        {
+            "subject": {"kind": "teapot"},
+            "selection": _CORRECTED,
+            "light": {"kind": "phong", "diffuse": 0.8, "specular": 0.2, "shininess": 120},
+            "camera": _camera(4.0, 160, 24, 0.45),
+            "sun": _sun(205, 42),
+        },
+    ),
+    "dragon": Preset(
+        "Dragon",
+        "Its wings lay shadows on its back.",
+        {
+            "subject": {"kind": "dragon"},
+            "selection": _CORRECTED,
+            "camera": _camera(4.0, 140, 18, 0.75),
+            "sun": _sun(215, 38),
+        },
+    ),
     "knot": Preset(
         "Knot",
         "A rope of three strands, knotted: it hides much of itself from the sun.",
-        {"selection": {"kind": "position_corrected"}},
+        {"selection": _CORRECTED, "camera": _camera(4.4, 150, 30, 0.35)},
+    ),
+    "thesis": Preset(
+        "As in the thesis",
+        "Satin in 129 directions, nine bytes of shadow a point, and the nearest direction: its edges leap.",
+        {
+            "subject": {"kind": "teapot"},
+            "visibility": {"directions": 129},
+            "selection": {"kind": "nearest"},
+            "light": {"kind": "measured_brdf"},
+            "material": {"kind": "satin"},
+            "self_shadow": {"kind": "harmonics"},
+            "camera": _camera(4.0, 160, 24, 0.45),
+            "sun": _sun(205, 42),
+        },
+    ),
+    "validation": Preset(
+        "Validation",
+        "Red, green or blue by the directions of light and view: a wrong index shows at once.",
+        {
+            "subject": {"kind": "teapot"},
+            "selection": _CORRECTED,
+            "light": {"kind": "measured_brdf", "ambient": 0.0},
+            "material": {"kind": "validation"},
+            "camera": _camera(4.0, 160, 24, 0.45),
+            "sun": _sun(205, 42),
+        },
+    ),
+    "evening": Preset(
+        "Evening",
+        "Metal that mirrors an evening, with the sun, each in its share.",
+        {
+            "subject": {"kind": "teapot"},
+            "selection": _CORRECTED,
+            "light": {"kind": "combined", "surface_share": 0.7, "matt": 0.1, "mirror": 0.5},
+            "material": {"kind": "metal"},
+            "environment": {"kind": "evening"},
+            "camera": _camera(4.0, 200, 20, 0.45),
+            "sun": _sun(240, 20),
+        },
+    ),
+    "basket": Preset(
+        "Basket",
+        "A lamp shines out of it through its wicker's gaps.",
+        {
+            "subject": {"kind": "basket"},
+            "selection": _CORRECTED,
+            "lamp": {"lit": True, "place": [0.0, 0.0, 0.75], "intensity": 60.0},
+            "camera": _camera(4.9, 150, 26, 0.95),
+            "sun": _sun(230, 14),
+        },
+    ),
+    "tree": Preset(
+        "Tree",
+        "Leaves are thinner than a texel: what remains of them is what the texels' middles meet.",
+        {
+            "subject": {"kind": "tree"},
+            "selection": _CORRECTED,
+            "light": {"kind": "phong", "specular": 0.03},
+            "camera": _camera(4.4, 150, 8, 1.0),
+            "sun": _sun(215, 40),
+        },
+    ),
+    "land": Preset(
+        "Land",
+        "A block of land under a low sun: each point knows its own horizon.",
+        {
+            "subject": {"kind": "relief"},
+            "selection": _CORRECTED,
+            "light": {"kind": "phong", "specular": 0.0},
+            "self_shadow": {"kind": "bits"},
+            "camera": _camera(5.0, 150, 32, 0.1),
+            "sun": _sun(250, 18),
+        },
+    ),
+    "rock": Preset(
+        "Rock",
+        "Layers of stone in raking light.",
+        {
+            "subject": {"kind": "rock"},
+            "selection": _CORRECTED,
+            "light": {"kind": "phong", "specular": 0.04},
+            "camera": _camera(4.6, 165, 16, 0.6),
+            "sun": _sun(235, 28),
+        },
     ),
 }
