@@ -28,7 +28,7 @@ GATHERED = """    Ray ray = pixel_ray(gl_FragCoord.xy);
     vec4 sum = vec4(0.0);
     tet_here = int(number + 0.5) / 4;
     Segment segment = cell_segment(ray, near, cell_a, cell_b, cell_c, cell_u, cell_v, cell_w);
-    sampling_segment(ray, segment, sum);
+    gather_cell(ray, segment, sum);
     float z = (segment.near + segment.far - moment_reach.x - moment_reach.y) / (moment_reach.y - moment_reach.x);
 """
 

@@ -53,7 +53,7 @@ void main() {
     vec4 sum = vec4(0.0);
     for (int place = first; place < last && sum.a < OPAQUE; place++) {
         vec2 held = list_fragment[place];
-        sampling_segment(ray, cell_numbered(ray, max(held.x, 0.0), int(held.y + 0.5)), sum);
+        gather_cell(ray, cell_numbered(ray, max(held.x, 0.0), int(held.y + 0.5)), sum);
         sum = accumulation_kept(sum);
     }
     gathered = buffer_of(sum);

@@ -41,7 +41,7 @@ void main() {
     if (layer.y < 0.5) discard;
     Ray ray = pixel_ray(gl_FragCoord.xy);
     vec4 sum = vec4(0.0);
-    sampling_segment(ray, cell_numbered(ray, max(layer.x, 0.0), int(layer.y - 0.5)), sum);
+    gather_cell(ray, cell_numbered(ray, max(layer.x, 0.0), int(layer.y - 0.5)), sum);
     gathered = buffer_of(sum);
 }"""
 

@@ -68,6 +68,7 @@ void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     Ray ray = pixel_ray(gl_FragCoord.xy);
     vec4 sum = vec4(0.0);
+    gather_begin();
     bool met = %s;
     for (int layer = 0; layer < entry_layers && !met && sum.a < OPAQUE; layer++) {
         vec2 entry = entry_of(pixel, layer);
@@ -78,6 +79,7 @@ void main() {
         }
         met = order_walk(ray, int(entry.y), max(entry.x, 0.0), sum);
     }
+    gather_rest(ray, sum);
     gathered = buffer_of(sum);
 }"""
 
@@ -171,6 +173,9 @@ def composed(
         files += technique.includes
         files.append(glsl_file("shells", slot, technique.model_fields["kind"].default))
         declarations += technique_declarations(slot, technique)
+        if slot == "sampling":
+            files.append("shells/gather.glsl")
+            macros["SAMPLING_WHOLE"] = int(technique.whole)
         macros.update(build)
     version = max([version, *(technique.requires for _, technique, _ in techniques)])
     return assemble(

@@ -46,7 +46,7 @@ void main() {
     float near = max(plane_distance(ray, cell_entry), 0.0);
     tet_here = int(number + 0.5) / 4;
     vec4 sum = vec4(0.0);
-    sampling_segment(ray, cell_segment(ray, near, cell_a, cell_b, cell_c, cell_u, cell_v, cell_w), sum);
+    gather_cell(ray, cell_segment(ray, near, cell_a, cell_b, cell_c, cell_u, cell_v, cell_w), sum);
     gathered = buffer_of(order_gathered(sum));
 }"""
 

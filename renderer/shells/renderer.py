@@ -102,6 +102,8 @@ class ShellsRenderer:
         }
         if texture.beside is not None:
             textures["filter_beside"] = texture.beside
+        if texture.coded is not None:
+            textures["sampling_voxels"] = texture.coded
         shown = (texture_key, then.slide)
         frame = Frame(self, state, arrays, shell_key, shown, place, size, offset, sample, textures, values)
         looked, said = state.shadow.look(frame)
@@ -164,10 +166,11 @@ class ShellsRenderer:
         reading = (state.voxels.interpolation, state.voxels.wrap, state.voxels.storage)
         shape = baked["texture"].arrays["colour"].shape
         wide = sides(place, shape) if filtered == "directional" else (0.0, 0.0)
-        key = (baked["texture"].key, tuple(moment.items()), thickness, reading, filtered, wide)
+        key = (baked["texture"].key, tuple(moment.items()), thickness, reading, filtered, wide, "strides" in baked)
         if key not in self._textures:
+            strides = baked["strides"].arrays if "strides" in baked else None
             made = texture_of(baked["texture"].arrays, thickness, **moment)
-            self._textures[key] = upload(self._gl, made, state.voxels, thickness, filtered, wide)
+            self._textures[key] = upload(self._gl, made, state.voxels, thickness, filtered, wide, strides)
             while len(self._textures) > TEXTURES_KEPT:
                 self._textures.popitem(last=False)[1].release()
         self._textures.move_to_end(key)

@@ -21,7 +21,7 @@ from renderer.world.sun import Sun, SunDirection
 SLOTS = ("order", "sampling", "light", "shadow", "filter", "accumulation")
 DEFAULTS = {
     "order": "walk",
-    "sampling": "adaptive",
+    "sampling": "stochastic",
     "light": "lambert",
     "shadow": "deep_shadow_map",
     "filter": "mipmap",

@@ -21,6 +21,10 @@ class ShellsTechnique(Technique):
     includes: ClassVar[tuple[str, ...]] = ()
     """Shader files that its own needs before it, relative to the shader root."""
 
+    whole: ClassVar[bool] = False
+    """Of the slot `sampling`: whether it lights a ray as a whole, by `sampling_begin` and `sampling_rest` before and
+    after its segments."""
+
     def bakes(self, state: Any) -> list[Bake]:
         """The precomputations this technique needs beside the shell and its texture."""
         return []

@@ -8,12 +8,14 @@ from dataclasses import dataclass
 import moderngl
 import numpy as np
 
+from renderer.core.technique import Arrays
 from renderer.gl.context import GL
 from renderer.gl.textures import Filter
 from renderer.shells.texture.block import ShellTexture
 from renderer.shells.texture.directional import directional_pyramid
 from renderer.shells.texture.extinction import Extinct, bytes_of, form_of, halves
 from renderer.shells.texture.pyramid import Extents, above_pyramid, extents, mean_pyramid, thesis_pyramid
+from renderer.shells.texture.strides import coded
 from renderer.shells.voxels import Voxels
 
 PYRAMIDS: dict[str, Callable[[Extinct, Extents], list[Extinct]]] = {
@@ -35,6 +37,7 @@ class Uploaded:
     Attributes:
         matter, normal: as shaders/shells/matter.glsl reads them. beside: extinctions along u and v, in the same unit as
             those of `matter`, where the filter tells directions apart.
+        coded: as renderer/shells/texture/strides.py tells, where it is asked for.
         scale: what 1 in them stands for, 1/m. levels: coarser ones.
         coding: of normals, factor and summand that make them of what is read.
     """
@@ -42,6 +45,7 @@ class Uploaded:
     matter: moderngl.Texture3D
     normal: moderngl.Texture3D
     beside: moderngl.Texture3D | None
+    coded: moderngl.Texture3D | None
     scale: float
     levels: int
     coding: tuple[float, float]
@@ -52,16 +56,20 @@ class Uploaded:
         self.normal.release()
         if self.beside is not None:
             self.beside.release()
+        if self.coded is not None:
+            self.coded.release()
 
 
 def upload(
-    gl: GL, texture: ShellTexture, voxels: Voxels, thickness: float, levels: str, sides: tuple[float, float] = (0, 0)
+    gl: GL, texture: ShellTexture, voxels: Voxels, thickness: float, levels: str, sides: tuple[float, float] = (0, 0),
+    strides: Arrays | None = None,
 ) -> Uploaded:
     """The texture, in the form that its interpolation asks for.
 
     Args:
         texture: as it is at the moment. thickness: of the shell [m]. levels: how coarser ones are made, a key of
             `PYRAMIDS`; empty where none is read. sides: of a voxel along u and v [m], for `directional`.
+            strides: of the baked texture, where they are wanted.
     """
     finest = form_of(texture)
     height = thickness / len(finest.matter) / texture.reference_length
@@ -90,9 +98,11 @@ def upload(
     matter, normal, *rest = (
         gl.texture3d(part[0], _between(voxels), (side, side, "clamp"), part[1:]) for part in stored
     )
+    codes = coded(strides, [level.matter for level in made]) if strides is not None else []
+    bytewise = gl.texture3d(codes[0], "nearest", (side, side, "clamp"), codes[1:]) if codes else None
     coding = (255 / 127, -128 / 127) if kind == "bytes" else (1.0, 0.0)
     scale = greatest / texture.reference_length
-    return Uploaded(matter, normal, rest[0] if rest else None, scale, len(made) - 1, coding)
+    return Uploaded(matter, normal, rest[0] if rest else None, bytewise, scale, len(made) - 1, coding)
 
 
 def _between(voxels: Voxels) -> Filter:

@@ -37,7 +37,7 @@ void main() {
     vec4 sum = vec4(0.0);
     if (held.y >= 0.0) {
         order_leaves(pixel, held);
-        sampling_segment(ray, cell_numbered(ray, max(held.x, 0.0), int(held.y + 0.5)), sum);
+        gather_cell(ray, cell_numbered(ray, max(held.x, 0.0), int(held.y + 0.5)), sum);
     }
     gathered = buffer_of(sum);
 }"""
@@ -51,7 +51,7 @@ void main() {
         vec2 held = order_through(pixel, vec2(1.0e30, -1.0));
         if (held.y >= 0.0) {
             order_leaves(pixel, held);
-            sampling_segment(ray, cell_numbered(ray, max(held.x, 0.0), int(held.y + 0.5)), sum);
+            gather_cell(ray, cell_numbered(ray, max(held.x, 0.0), int(held.y + 0.5)), sum);
             sum = accumulation_kept(sum);
         }
     }

@@ -18,6 +18,7 @@ from renderer.gl.thread import GLThread
 from renderer.shells.bakes import bakes
 from renderer.shells.renderer import ShellsRenderer
 from renderer.shells.state import ShellsState
+from renderer.shells.texture.strides import bake_strides
 
 Draw = Callable[..., np.ndarray]
 
@@ -46,7 +47,8 @@ def thread() -> Iterator[GLThread]:
 
 @pytest.fixture(scope="session")
 def draw(thread: GLThread) -> Draw:
-    """Draws one sample at the pixels' centres: `draw(patch, colour, normal, reference_length, size, shell)`."""
+    """Draws one sample at the pixels' centres: `draw(patch, colour, normal, reference_length, size, shell)`; or the
+    mean of several, with other jitter each."""
     cache = Cache()
 
     def drawn(
@@ -56,6 +58,7 @@ def draw(thread: GLThread) -> Draw:
         reference_length: float = 0.1,
         size: int = 8,
         shell: Mapping[str, np.ndarray] | None = None,
+        samples: int = 1,
     ) -> np.ndarray:
         state = validate(ShellsState, {**PLAIN, **patch})
         arrays = {bake.name: BakedArrays(bake_key(bake), bake_now(bake, cache)) for bake in bakes(state)}
@@ -67,20 +70,26 @@ def draw(thread: GLThread) -> Draw:
             "reference_length": np.array(reference_length),
         }
         arrays["texture"] = BakedArrays("given", texture)
+        if "strides" in arrays:
+            strides = bake_strides({"wrap": state.voxels.wrap}, {"texture": texture}, lambda share, words: None)
+            arrays["strides"] = BakedArrays("given strides", strides)
         if shell is not None:
             arrays["shell"] = BakedArrays("given shell", shell)
-        return thread.call(_picture, state, arrays, size)
+        return thread.call(_picture, state, arrays, size, samples)
 
     return drawn
 
 
-def _picture(gl: GL, state: ShellsState, baked: Mapping[str, BakedArrays], size: int) -> np.ndarray:
+def _picture(gl: GL, state: ShellsState, baked: Mapping[str, BakedArrays], size: int, samples: int) -> np.ndarray:
     renderer, target = ShellsRenderer(gl), Target(gl, size, size)
     try:
-        prepared = renderer.prepare(state, baked, (size, size), (0.5, 0.5), 0)
-        target.use()
-        renderer.draw(prepared)
-        return target.read()
+        total = np.zeros((size, size, 4), np.float32)
+        for sample in range(samples):
+            prepared = renderer.prepare(state, baked, (size, size), (0.5, 0.5), sample)
+            target.use()
+            renderer.draw(prepared)
+            total += target.read()
+        return total / np.float32(samples)
     finally:
         renderer.release()
         target.release()
