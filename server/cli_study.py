@@ -13,6 +13,7 @@ from renderer.benching import COMBINATION
 from renderer.core.channel import Progress
 from renderer.core.errors import InputError
 from renderer.session import Session
+from server import cli_hemispheres
 from server.cli_progress import Bar
 from server.settings import ROOT, load
 
@@ -53,6 +54,7 @@ def add(commands: Any) -> None:
     command.add_argument("--faces", action="store_true", help="of faces, selection and codes instead (directional)")
     command.add_argument("--views", type=int, default=24, help="from which the subject is seen (with --faces)")
     command.add_argument("--rays", type=int, default=4096, help="of each point of its truth (with --radiosity)")
+    cli_hemispheres.add(command)
     command.add_argument("--photons", type=int, default=PHOTONS, help="of each slab's truth (with --slab)")
     command.add_argument("--moving", type=int, default=64, help="side of pictures whose sun moves (with --kinds), px")
     command.add_argument("--steps", type=int, default=16, help="of the moving sun (with --kinds)")
@@ -128,6 +130,8 @@ def study(given: argparse.Namespace) -> int:
     if given.radiosity:
         from server import cli_radiosity
         return cli_radiosity.study(given)
+    if given.hemispheres:
+        return cli_hemispheres.study(given)
     if given.slab:
         return slab(given)
     if given.memory or given.faces:
