@@ -133,7 +133,9 @@ def study(given: argparse.Namespace) -> int:
     if given.hemispheres:
         return cli_hemispheres.study(given)
     if given.slab:
-        return slab(given)
+        from server import cli_slab
+
+        return cli_slab.study(given)
     if given.memory or given.faces:
         from server import cli_directional
         return (cli_directional.memory if given.memory else cli_directional.faces)(given)
@@ -201,26 +203,6 @@ def kinds(given: argparse.Namespace) -> int:
     if given.docs:
         keep(folder, DOCS / "study" / given.scene / KINDS, (*KEPT, kind_costs.RAW))
     print(f"{folder}: results.jsonl, raw.jsonl, table.md, speed_accuracy.svg .png .csv")
-    return 0
-
-
-def slab(given: argparse.Namespace) -> int:
-    """Hold every scattering technique to photons in a plane cloud, and write raw results, table and charts."""
-    from renderer import slab_report
-
-    if given.scene != "clouds":
-        raise InputError("--slab", f"{given.scene} has no clouds", "clouds")
-    if not 1000 <= given.photons <= 100_000_000:
-        raise InputError("--photons", "too few or too many", "1,000 to 100,000,000")
-    folder = Path(load().study) / given.scene / "slab"
-    tell = Teller("slab")
-    try:
-        print(slab_report.run(folder, given.photons, tell))
-    finally:
-        tell.bar.close()
-    if given.docs:
-        keep(folder, DOCS / "study" / given.scene / "slab", slab_report.FILES)
-    print(f"{folder}: {', '.join(slab_report.FILES)}")
     return 0
 
 
