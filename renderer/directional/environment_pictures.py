@@ -97,7 +97,8 @@ def evening() -> np.ndarray:
     sky = sky + np.array([1.6, 0.8, 0.3]) * np.exp(-away / 22) + np.array([180.0, 110.0, 55.0]) * _soft(away - 1.6, 1.4)
     ridge = 0.05 + 0.035 * np.sin(3 * azimuth + 0.4) + 0.02 * np.sin(7 * azimuth + 2.1) + 0.01 * np.sin(17 * azimuth)
     ground = np.array([0.07, 0.06, 0.045]) * (1 + 0.8 * np.exp(-away / 60))
-    return np.asarray(np.where(height > ridge, sky, ground))
+    haze = _soft(ridge + 0.02 - height, 0.05)  # a ridge as sharp as texels would show them
+    return np.asarray(ground + haze * (sky - ground))
 
 
 PICTURES: dict[str, Callable[[], np.ndarray]] = {"studio": studio, "evening": evening}
