@@ -77,7 +77,7 @@ def environment_bake(environment: AnyEnvironment) -> list[Bake]:
     """The precomputation of a picture; none of the sky's, which follows the sun."""
     if environment.kind == "sky":
         return []
-    return [Bake("environment", bake_environment, bake_arguments(environment), seconds=4)]
+    return [Bake("environment", bake_environment, bake_arguments(environment), version=2, seconds=4)]
 
 
 def bake_environment(

@@ -135,4 +135,52 @@ PRESETS = {
             "sun": _sun(235, 28),
         },
     ),
+    "validation": Preset(
+        "Validation table",
+        "Red, green and blue by the azimuth of the light from the view's: a table read by the wrong index would show.",
+        {
+            "subject": {"kind": "teapot"},
+            "camera": {"kind": "orbit", "distance": 3.9},
+            "sun": {"kind": "direction", "azimuth": 165.0, "elevation": 40.0},
+            "material": {"kind": "validation"},
+            "view": {"exposure": -0.5},
+            "light": {"kind": "measured_brdf"},
+            "selection": {"kind": "position_corrected"},
+        },
+    ),
+    "satin": Preset(
+        "Satin rope",
+        "A measured table with a grain: the sheen runs across the threads.",
+        {
+            "camera": {"kind": "orbit", "distance": 4.2},
+            "sun": {"kind": "direction", "azimuth": 165.0, "elevation": 40.0},
+            "material": {"kind": "satin"},
+            "view": {"exposure": 0.0},
+            "light": {"kind": "measured_brdf", "ambient": 0.5},
+            "selection": {"kind": "position_corrected"},
+        },
+    ),
+    "studio": Preset(
+        "Gold in a studio",
+        "Sun on a table of rough metal, and a studio's soft lights in a blurred mirror: every light at once.",
+        {
+            "subject": {"kind": "dragon"},
+            "camera": {"kind": "orbit", "distance": 4.4},
+            "material": {"kind": "metal"},
+            "environment": {"kind": "studio"},
+            "light": {"kind": "combined", "surface": "measured", "surface_share": 0.6, "matt": 0.2},
+            "selection": {"kind": "position_corrected"},
+        },
+    ),
+    "evening": Preset(
+        "Glaze in the evening",
+        "A mirror over painted matt clay: hills and an evening sky, prefiltered for the one and gathered for the other.",
+        {
+            "subject": {"kind": "teapot"},
+            "camera": {"kind": "orbit", "distance": 3.9, "elevation": 6.0},
+            "environment": {"kind": "evening", "rotation": 100.0},
+            "light": {"kind": "environment"},
+            "selection": {"kind": "position_corrected"},
+        },
+    ),
 }

@@ -216,7 +216,8 @@ def sampled(
 
 def brdf_bake(material: AnyMaterial) -> Bake:
     """The precomputation of a table."""
-    return Bake("brdf", bake_brdf, bake_arguments(material), seconds=2 if material.kind == "file" else 0.5)
+    seconds = 2 if material.kind == "file" else 0.5
+    return Bake("brdf", bake_brdf, bake_arguments(material), version=2, seconds=seconds)
 
 
 def bake_brdf(
