@@ -174,7 +174,7 @@ PRESETS = {
     ),
     "evening": Preset(
         "Glaze in the evening",
-        "A mirror over painted matt clay: hills and an evening sky, prefiltered for the one and gathered for the other.",
+        "A mirror over painted matt clay: hills and an evening sky, sharp in the one and gathered by the other.",
         {
             "subject": {"kind": "teapot"},
             "camera": {"kind": "orbit", "distance": 3.9, "elevation": 6.0},
