@@ -44,7 +44,7 @@ class DirectionalState(SceneState):
 
     scene: Literal["directional"] = "directional"
     camera: Camera = param(
-        Orbit(target=(0.0, 0.0, 0.5), distance=3.4, azimuth=150.0, elevation=18.0, field_of_view=30.0),
+        Orbit(target=(0.0, 0.0, 0.5), distance=4.8, azimuth=150.0, elevation=22.0, field_of_view=30.0),
         label="Camera",
         help="Where the picture is taken from.",
         cost="host",
