@@ -35,6 +35,9 @@ RINGS = 64
 PAIRS = 2000
 """Random pairs of directions over which reciprocity is judged."""
 
+MIRRORED = ((45.0, 180.0, 45.0, 0.0),)
+"""What is asked for where nothing is: a mirror's direction, in degrees."""
+
 Polar = Annotated[float, Field(ge=0, le=90)]
 Azimuth = Annotated[float, Field(ge=-360, le=360)]
 Reflectance = Callable[[np.ndarray, np.ndarray], np.ndarray]
@@ -82,15 +85,15 @@ AnySurface = Validation | Satin | Matte | Metal | PhongLobe | LafortuneLobe
 class ReflectanceArguments(Model):
     """A surface, and the directions that are asked for."""
 
-    surface: Annotated[AnySurface, Field(discriminator="kind")] = param(
+    material: Annotated[AnySurface, Field(discriminator="kind")] = param(
         Matte(),
-        label="Surface",
+        label="Material",
         help="A lobe (phong, lafortune) or a built-in table (validation, satin, matte, metal), as its name or with its "
         "parameters; unread where a file is given.",
         cost="host",
     )
     directions: Annotated[tuple[tuple[Polar, Azimuth, Polar, Azimuth], ...], Field(max_length=MOST)] = param(
-        (),
+        MIRRORED,
         label="Directions",
         help="theta_o, phi_o, theta_l, phi_l of each pair, in degrees: view and light, theta from the normal, phi from "
         "the tangent; or the file of that name.",
@@ -105,7 +108,7 @@ class ReflectanceArguments(Model):
     )
     albedo: bool = param(True, label="Albedo", help="Whether the albedo of each view is summed.", cost="host")
 
-    @field_validator("surface", mode="before")
+    @field_validator("material", mode="before")
     @classmethod
     def _by_name(cls, given: Any) -> Any:
         return {"kind": given} if isinstance(given, str) else given
@@ -119,7 +122,7 @@ def _surface(given: ReflectanceArguments, files: Mapping[str, Path]) -> tuple[Re
         except InputError as failure:
             raise failure.at("brdf", ("file",)) from None
         return _read(table), (f"file in the coordinates {table.coordinates}", *table.notes)
-    surface = given.surface
+    surface = given.material
     if isinstance(surface, PhongLobe | LafortuneLobe):
         return surface.reflectance, (f"lobe: {surface.kind}",)
     if given.read == "model":
@@ -148,7 +151,7 @@ def _directions(given: ReflectanceArguments, files: Mapping[str, Path]) -> np.nd
     """Angles (N, 4) in degrees."""
     if "directions" not in files:
         found = np.array(given.directions, np.float64).reshape(-1, 4)
-    elif given.directions:
+    elif given.directions != MIRRORED:
         raise InputError("directions", "are given both as an argument and as a file", "one of the two")
     else:
         found = read_directions(files["directions"])

@@ -26,7 +26,7 @@ PAIRS = [[30.0, 10.0, 40.0, 200.0], [0.0, 0.0, 0.0, 0.0], [60.0, 90.0, 60.0, 270
 
 
 def found(surface: Any, directions: Any = PAIRS, files: Any = None, **more: Any) -> Mapping[str, np.ndarray]:
-    return door.measure("reflectance", {"surface": surface, "directions": directions, **more}, files).arrays
+    return door.measure("reflectance", {"material": surface, "directions": directions, **more}, files).arrays
 
 
 def test_a_lobe_in_closed_form() -> None:
@@ -114,17 +114,17 @@ def web(tmp_path: Path) -> Iterator[TestClient]:
 
 
 def test_rest_answers_alike_and_names_what_is_wrong(web: TestClient) -> None:
-    answer = web.post("/api/measure/reflectance", json={"surface": {"kind": "satin"}, "directions": PAIRS})
+    answer = web.post("/api/measure/reflectance", json={"material": {"kind": "satin"}, "directions": PAIRS})
     assert answer.status_code == 200, answer.text
     assert np.array(answer.json()["brdf"]) == pytest.approx(found("satin")["brdf"])
-    refused = web.post("/api/measure/reflectance", json={"surface": "satin", "directions": [[95, 0, 0, 0]]})
+    refused = web.post("/api/measure/reflectance", json={"material": "satin", "directions": [[95, 0, 0, 0]]})
     assert (refused.status_code, refused.json()["errors"][0]["field"]) == (422, "directions.0.0")
 
 
 def test_bad_questions_are_refused_in_words(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="none is given"):
         found("matte", [])
-    with pytest.raises(InvalidDocument, match="surface"):
+    with pytest.raises(InvalidDocument, match="material"):
         found("velvet")
     with pytest.raises(LimitError, match="views"):
         found("matte", [[0.1 * k, 0, 0, 0] for k in range(VIEWS + 1)])

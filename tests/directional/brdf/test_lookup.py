@@ -9,6 +9,8 @@ from renderer.core.errors import LimitError
 from renderer.directional.brdf.lookup import between, coordinates_of, lookup
 from renderer.directional.brdf.materials import Metal, Satin, Validation
 from renderer.directional.brdf.resident import plane, ruler, table_uniforms
+from renderer.reference.directional_brdf import reflected
+from renderer.reference.directional_world import Measured
 from renderer.world.brdf import PERIODS, BrdfTable, direction_of
 from renderer.world.brdf_files import MERL_SHAPE
 from tests.directional.light.points import random_directions
@@ -123,3 +125,11 @@ def test_eight_values_are_as_good_as_sixteen_without_a_grain() -> None:
     second = np.abs(np.roll(values, 1, axis=3) - 2 * values + np.roll(values, -1, axis=3)).max()
     off = np.abs(lookup(three, between_nodes, light) - lookup(four, between_nodes, light)).max()
     assert 0.02 < off <= second / 4 + 1e-12
+
+
+@pytest.mark.parametrize("source", [Validation(), Validation(azimuths="both"), Satin(), Metal()], ids=repr)
+def test_the_reference_reads_tables_alike_by_code_of_its_own(source: Validation | Satin | Metal) -> None:
+    table = source.table()
+    view, light = random_directions(500, 8), random_directions(500, 9)
+    other = reflected(Measured(table.coordinates, table.nodes, table.values), view, light)
+    np.testing.assert_allclose(lookup(table, view, light), other, rtol=1e-6, atol=1e-9)
