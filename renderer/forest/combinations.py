@@ -19,10 +19,11 @@ SEEN: dict[str, Any] = {"kind": "visible_hemisphere"}
 At coarse levels it is too bright, so that filtered combinations keep the share."""
 
 FINE: dict[str, Any] = {
-    "geometry": {"kind": "ray_march", "step": 1.0, "stop": 0.02},
+    "geometry": {"kind": "ray_march", "step": 1.0, "stop": 0.02, "first": 2.0},
     "filter": {"kind": "none"},
 }
-"""What the eye's ray costs is paid when the camera moves, and kept while the sun does."""
+"""What the eye's ray costs is paid when the camera moves, and kept while the sun does. A single frame with twice the
+steps lies as near to the converged picture (0.343 for 0.345 at noon) and costs seven tenths."""
 
 COMBINATIONS = {
     "thesis_degraded": Preset(

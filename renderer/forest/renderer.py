@@ -73,6 +73,7 @@ class ForestRenderer:
             offset: of the sample inside its pixel, from the top-left corner.
             sample: its number, which turns the jitter.
         """
+        state = state if sample else state.first_sample()
         values = self._world(state, baked)
         textures: dict[str, AnyTexture] = self._world_textures(state, baked)
         for slot, technique in state.techniques().items():
@@ -171,8 +172,8 @@ class ForestRenderer:
         arrays = {name: entry.arrays for name, entry in baked.items()}
         keys = tuple(sorted(entry.key for entry in baked.values()))
         key = (slot, technique.kind, keys)  # type: ignore[attr-defined]
-        made = self._baked.get(key, lambda: kept_textures(self._gl, slot, technique.kept_textures(state, arrays)))
-        return made  # type: ignore[return-value]
+        make = lambda: kept_textures(self._gl, slot, technique.kept_textures(state, arrays))  # noqa: E731
+        return self._baked.get(key, make)  # type: ignore[return-value]
 
     def _shadow_pass(
         self,
@@ -243,12 +244,11 @@ class ForestRenderer:
         textures: dict[str, AnyTexture],
     ) -> dict[str, AnyTexture]:
         """Where the rays of a sample look at the light; the same for every sun, so kept while only the sun moves."""
-        chosen = state.techniques()
         key = (
             state.camera,
             sample,
             state.ground.map_seed,
-            tuple(chosen[slot] for slot in TRACE_SLOTS),
+            tuple(state.techniques()[slot] for slot in TRACE_SLOTS),
             baked["terrain"].key,
             baked["pattern"].key,
         )

@@ -261,3 +261,7 @@ class ForestState(SceneState):
     def techniques(self) -> dict[str, Any]:
         """The chosen technique of each slot."""
         return {slot: getattr(self, slot) for slot in SLOTS}
+
+    def first_sample(self) -> ForestState:
+        """What the first sample of its picture is drawn as."""
+        return self.model_copy(update={"geometry": self.geometry.first_sample()})

@@ -62,6 +62,10 @@ class ForestTechnique(Technique):
         has its own."""
         return 0
 
+    def first_sample(self) -> ForestTechnique:
+        """What stands for it in a picture's first sample, the one that is shown while something moves."""
+        return self
+
     def constants(self) -> dict[str, Any]:
         """Values of `extra_declarations` that follow from the technique's own parameters."""
         return {}

@@ -17,10 +17,11 @@ Spoil = Callable[..., Any]
 
 
 def drawn(thread: GLThread, painter: view.Painter, samples: int, blocks: int, patch: dict[str, Any] | None = None,
-          size: tuple[int, int] = (SIDE, SIDE)) -> np.ndarray:
-    """The grove with a traced shadow, (H, W, 4) float64."""
+          size: tuple[int, int] = (SIDE, SIDE), longer: float = 1.0) -> np.ndarray:
+    """The grove with a traced shadow, (H, W, 4) float64; steps of the first sample so much `longer`."""
+    geometry = worlds.technique("geometry", "ray_march", step=1.0, stop=0.02, first=longer)
     march = worlds.technique("shadow", "sun_march", step=1.0, growth=0.0, bias=-1.5, stop=0.02, blocks=blocks)
-    made = worlds.state(**{**SCENE, **worlds.PLAIN, "shadow": march, **(patch or {})})
+    made = worlds.state(**{**SCENE, **worlds.PLAIN, "shadow": march, "geometry": geometry, **(patch or {})})
     return view.paint(thread, painter, made, grove(made), size, samples).linear.astype(np.float64)
 
 
@@ -53,6 +54,17 @@ def test_its_brightness_is_that_of_the_picture(thread: GLThread, painter: view.P
     first = drawn(thread, painter, 1, 3)
     # One look for nine pixels: two deviations of the mean over some five hundred of them.
     assert first[..., :3].mean() == pytest.approx(settled[..., :3].mean(), rel=0.1)
+
+
+def test_longer_steps_of_the_first_sample_are_lost_in_its_noise(
+    thread: GLThread, painter: view.Painter, settled: np.ndarray
+) -> None:
+    even, longer, far_longer = (drawn(thread, painter, 1, 3, longer=times) for times in (1.0, 2.0, 4.0))
+    assert off(longer, even) > 0
+    assert off(longer, settled) < 1.05 * off(even, settled)
+    assert off(far_longer, settled) > off(longer, settled)
+    second = [2 * drawn(thread, painter, 2, 3, longer=times) - first for times, first in ((1.0, even), (2.0, longer))]
+    np.testing.assert_allclose(*second, atol=1e-5)
 
 
 def test_opacity_is_each_pixels_own(thread: GLThread, painter: view.Painter) -> None:

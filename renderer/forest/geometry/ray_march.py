@@ -7,6 +7,9 @@ from typing import ClassVar, Literal
 from renderer.core.params import param
 from renderer.forest.technique import ForestTechnique
 
+FIRST_STOP = 0.1
+"""Transmittance at which a ray of the first sample ends, where its steps are longer than the others'."""
+
 
 class RayMarch(ForestTechnique):
     """Samples the canopy along each ray, front to back; skips what is empty, stops when nothing shows through."""
@@ -28,3 +31,19 @@ class RayMarch(ForestTechnique):
     stop: float = param(
         0.1, label="Early stop", help="Transmittance below which a ray ends.", unit="ratio", ge=0, le=0.2, step=0.005
     )
+    first: float = param(
+        1.0,
+        label="First sample",
+        help="How much longer the steps of a picture's first sample are, which is shown while the camera moves.",
+        unit="ratio",
+        cost="host",
+        ge=1,
+        le=4,
+        step=0.25,
+    )
+
+    def first_sample(self) -> RayMarch:
+        """Longer steps, and less to see behind what hides the most: the noise of one sample is far greater."""
+        if self.first == 1:
+            return self
+        return self.model_copy(update={"step": min(self.first * self.step, 4.0), "stop": max(self.stop, FIRST_STOP)})
