@@ -112,6 +112,7 @@ def bake_shadows(arguments: dict[str, Any], inputs: dict[str, Arrays], progress:
     layout = hemisphere_of(int(arguments["directions"]))
     subject, used = inputs["subject"], inputs["visibility"]["used"]
     caster = Caster(subject["vertices"], subject["faces"])
+    caster.lift += float(subject.get("lift", 0.0))
     positions = inputs["cloud"]["position"][used]
     normals = quantised(inputs["cloud"]["normal"][used].astype(np.float64))
     bits, openness = shadow_bits(caster, positions, normals, layout, progress)

@@ -43,8 +43,9 @@ def bake_subject(
 
     Returns:
         `vertices` (V, 3) float64 [m], `faces` (F, 3) int32, `normals` (F, 3, 3) float64 unit shading normals of the
-        corners, `colour` (F, 3) float64 linear reflectance, `two_sided` () bool, `box` (2, 3) [m], `notes` (N,) text,
-        and, where faces stand for points of the user's, `source` (F,) int32.
+        corners, `colour` (F, 3) float64 linear reflectance, `two_sided` () bool, `box` (2, 3) [m], `lift` () [m] how
+        far off the surface rays to the light begin, `notes` (N,) text, and, where faces stand for points of the user's,
+        `source` (F,) int32.
 
     Raises:
         InputError: a file of the user's cannot be had, or used.
@@ -64,6 +65,7 @@ def bake_subject(
         "colour": np.clip(np.asarray(solid.colour, np.float64), 0.0, 1.0),
         "two_sided": np.asarray(solid.two_sided),
         "box": box_of(vertices, solid.faces),
+        "lift": np.asarray(solid.lift),
         "notes": np.array(solid.notes, dtype=np.str_),
     }
     return made if solid.source is None else {**made, "source": solid.source.astype(np.int32)}
@@ -79,4 +81,4 @@ def box_of(vertices: np.ndarray, faces: np.ndarray) -> np.ndarray:
 
 def subject_bake(subject: AnySubject) -> Bake:
     """The subject's mesh."""
-    return Bake("subject", bake_subject, bake_arguments(subject), version=2, seconds=3)
+    return Bake("subject", bake_subject, bake_arguments(subject), version=3, seconds=3)

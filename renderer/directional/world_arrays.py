@@ -28,15 +28,16 @@ def world_arrays(state: DirectionalState, baked: Mapping[str, Arrays]) -> dict[s
         baked: arrays of `NEEDS`.
 
     Returns:
-        By name: `vertices`, `faces`, `normals` of corners, `colour` of faces and `two_sided` of the mesh; `sun`,
-        `e_sun`, `e_sky` and the `background`; and `light`, whose `parts` are models of reflection,
-        with the `lamp`, or None.
+        By name: `vertices`, `faces`, `normals` of corners, `colour` of faces, `two_sided` and `lift` of the mesh;
+        `sun`, `e_sun`, `e_sky` and the `background`; and `light`, whose `parts` are models of reflection, with the
+        `lamp`, or None.
     """
     now, sun = sky_for(baked["sky"], angles(state.sun)[1]), direction(state.sun)
     subject = baked["subject"]
     return {
         **{name: subject[name] for name in ("vertices", "faces", "normals", "colour")},
         "two_sided": bool(subject["two_sided"]),
+        "lift": float(subject.get("lift", 0.0)),
         "sun": tuple(float(v) for v in sun),
         "e_sun": tuple(float(v) for v in now.sun_irradiance),
         "e_sky": tuple(float(v) for v in now.sky_irradiance),

@@ -53,7 +53,7 @@ class Subject:
         self.corners, self.face_normals = corners[whole], across[whole] / area[whole, None]
         self.normals = np.asarray(world.normals, np.float64)[whole]
         self.colour = np.asarray(world.colour, np.float64)[whole]
-        self.two_sided = world.two_sided
+        self.two_sided, self._lift = world.two_sided, world.lift
         low, high = corners.reshape(-1, 3).min(axis=0), corners.reshape(-1, 3).max(axis=0)
         self.middle, self.diagonal = (low + high) / 2, float(np.linalg.norm(high - low))
         self._scene = EmbreeScene()
@@ -81,7 +81,7 @@ class Subject:
         if self.two_sided:
             behind = np.einsum("md,md->m", side, directions[hit])[:, None] > 0
             normal, side = np.where(behind, -normal, normal), np.where(behind, -side, side)
-        start = place + OFF * self.diagonal * side
+        start = place + (OFF * self.diagonal + self._lift) * side
         return hit, Hits(place, start, normal, self.colour[face], -directions[hit])
 
     def blocked(self, origins: Floats, directions: Floats, reach: Floats | None = None) -> NDArray[np.bool_]:

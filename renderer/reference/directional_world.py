@@ -94,6 +94,8 @@ class DirectionalWorld:
         vertices: (V, 3). faces: (F, 3) indices. normals: (F, 3, 3) unit, at the faces' corners, linear between them.
         colour: (F, 3) linear reflectance.
         two_sided: whether a face seen from behind turns its normal.
+        lift: how far off a face a ray to the light begins beside what rounding asks for, m: faces that stand for points
+            rise over one another.
         sun: unit vector to it. e_sun: irradiance facing it. e_sky: of the sky on the horizontal. All W m-2.
         parts: models of reflection and their weights; what they send adds up.
         lamp: a point light beside the sun.
@@ -106,6 +108,7 @@ class DirectionalWorld:
     normals: NDArray[np.floating]
     colour: NDArray[np.floating]
     two_sided: bool = False
+    lift: float = 0.0
     sun: Colour3 = (0.0, 0.0, 1.0)
     e_sun: Colour3 = (0.0, 0.0, 0.0)
     e_sky: Colour3 = (0.0, 0.0, 0.0)

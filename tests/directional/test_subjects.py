@@ -13,6 +13,7 @@ from renderer.core.cache import AssetStore
 from renderer.core.errors import InputError
 from renderer.directional.casting import Caster
 from renderer.directional.cloud import bake_cloud
+from renderer.directional.shadow_hemispheres import bake_shadows
 from renderer.directional.subject import basket, dragon, knot, relief, rock, teapot
 from renderer.directional.subject.solid import FINEST, FLATTEST, Solid, compact
 from renderer.directional.subject.surface_nets import surface_nets
@@ -165,6 +166,12 @@ def test_points_of_ones_own_are_squares_without_gaps(tmp_path, monkeypatch: pyte
     for k in range(0, 4000, 400):
         seen = Caster(made, cloud).points(np.repeat(eyes[k : k + 1], 1, axis=0), -away[k])
         assert np.linalg.norm(cloud["position"][seen[0]] - cloud["position"][k]) < 2 * float(cloud["spacing"])
+    # A ball is in nobody's light: what rises over a point is its neighbours' squares, which the lift clears.
+    seen = {"used": np.arange(0, 4000, 40, dtype=np.int32)}
+    for lift, least, most in ((made["lift"], 0.99, 1.0), (np.asarray(0.0), 0.3, 0.98)):
+        inputs = {"subject": {**made, "lift": lift}, "cloud": cloud, "visibility": seen}
+        open_to = bake_shadows({"directions": 129}, inputs, silent)["openness"].mean()
+        assert least < open_to <= most + 1e-6
     with pytest.raises(InputError, match="size"):
         baked({**document, "size": 0.0})
     half = baked({**document, "most": 1000, "sides": "both"})

@@ -90,4 +90,5 @@ def squares(
     faces = (4 * np.arange(len(position))[:, None, None] + np.array([(0, 1, 2), (0, 2, 3)])).reshape(-1, 3)
     source = np.repeat(np.arange(len(position)), 2)
     normals = np.broadcast_to(normal[source][:, None], (len(source), 3, 3))
-    return Solid(np.stack(corners, axis=1).reshape(-1, 3), faces, colour[source], normals, both, source, notes)
+    return Solid(np.stack(corners, axis=1).reshape(-1, 3), faces, colour[source], normals, both, source, notes,
+                 float(np.median(half)))

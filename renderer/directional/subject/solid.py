@@ -30,6 +30,8 @@ class Solid:
         two_sided: whether the back of a face is seen too.
         source: (F,) point of the user's cloud that a face stands for; None for true meshes.
         notes: what was assumed, in words.
+        lift: how far off the surface what looks for light begins [m]: squares that stand for points rise over one
+            another by about their width where the surface bends, and would be in each other's light.
     """
 
     vertices: np.ndarray
@@ -39,6 +41,7 @@ class Solid:
     two_sided: bool = False
     source: np.ndarray | None = None
     notes: tuple[str, ...] = field(default_factory=tuple)
+    lift: float = 0.0
 
     def stood(self, size: float) -> Solid:
         """Scaled so that the longest side of its box is `size` [m], its foot's middle at the origin; 0 leaves it."""
@@ -47,7 +50,8 @@ class Solid:
         used = self.vertices[np.unique(self.faces)]
         low, high = used.min(axis=0), used.max(axis=0)
         foot = np.array([*((low + high) / 2)[:2], low[2]])
-        return replace(self, vertices=(self.vertices - foot) * (size / (high - low).max()))
+        scale = float(size / (high - low).max())
+        return replace(self, vertices=(self.vertices - foot) * scale, lift=self.lift * scale)
 
     def shaded(self) -> np.ndarray:
         """(F, 3, 3) its shading normals."""
