@@ -13,6 +13,7 @@ from server import (
     cli_distance,
     cli_draw,
     cli_far,
+    cli_headline,
     cli_leaves,
     cli_measure,
     cli_serve,
@@ -37,6 +38,7 @@ def parser(arguments: Sequence[str]) -> argparse.ArgumentParser:
     cli_climb.add(commands)
     cli_distance.add(commands)
     cli_far.add(commands)
+    cli_headline.add(commands)
     cli_measure.add(commands, "measure" in arguments)
     cli_sunlight.add(commands, "sunstudy" in arguments)
     cli_study.add(commands)

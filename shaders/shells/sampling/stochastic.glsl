@@ -6,7 +6,7 @@
 // sampling_voxels, a byte a voxel, of which renderer/shells/texture/strides.py tells: extinction, and how far a ray may go with it;
 // lambda in [0, 1] along the segment; passed, left, shares of the light that pass; stratum, of the opacity in SAMPLING_PLACES equal
 // shares: of what hides it, one place is kept in proportion to its weight, as the sampling plan has it; its weight is all of theirs.
-// Deviations: light is filtered before it is looked up, as the thesis has it; it changes less than opacity. Where voxels
+// Deviations: a rational function stands for the logarithm of where in a step a place lies; light is filtered before it is looked up, as the thesis has it; it changes less than opacity. Where voxels
 // interpolate extinctions, the mean is of opacities still.
 
 struct SamplingPlace {
@@ -46,7 +46,7 @@ void sampling_segment(Ray ray, Segment segment, inout vec4 sum) {
     vec3 counts = vec3(textureSize(sampling_voxels, 0)) * exp2(-level), along = segment.to - segment.from;
     vec3 from = segment.from + sampling_shift / counts, voxels = abs(along * counts);
     float share = 1.0 / clamp(ceil(length(voxels) * sampling_rate), 1.0, float(SAMPLING_MOST));
-    float within = 1.0 / (max(max(voxels.x, voxels.y), max(voxels.z, 1.0e-6)) * share); // steps a voxel
+    float steps_a_voxel = 1.0 / (max(max(voxels.x, voxels.y), max(voxels.z, 1.0e-6)) * share);
     float length_of_step = (segment.far - segment.near) * share, densest = voxels_density * STRIDE_DENSEST / reference_length;
     float lambda = sampling_start * share, passed = 1.0 - sum.a;
     do {
@@ -55,7 +55,7 @@ void sampling_segment(Ray ray, Segment segment, inout vec4 sum) {
         bool empty = code < STRIDE_FAINT, faint = code < STRIDE_OTHER;
         float root = faint ? code * STRIDE_FAINT_CODING.x - STRIDE_FAINT_CODING.y : code * STRIDE_CODING.x - STRIDE_CODING.y;
         float stride = empty ? 255.0 * code - 0.99 : faint ? STRIDE_OF_FAINT - 1.0 : 0.0;
-        float steps = max(floor(stride * within), 1.0);
+        float steps = max(floor(stride * steps_a_voxel), 1.0);
         float extinction = filter_extinction(root * root * densest, place, level);
         float left = empty ? passed : passed * exp(-extinction * length_of_step * steps), weight = passed - left;
         float stratum = floor((1.0 - passed) * float(SAMPLING_PLACES)), before = 0.0;
@@ -64,7 +64,9 @@ void sampling_segment(Ray ray, Segment segment, inout vec4 sum) {
         bool take = level_of < weight;
         float of = take ? weight : before;
         sampling_chance = of > 0.0 ? clamp((take ? level_of : level_of - weight) / of, 0.0, 1.0) : sampling_chance;
-        float at = mix(segment.near, segment.far, lambda + (steps - 1.0) * share * sampling_chance);
+        // Within its step a place lies where even matter has hidden as much: at its start where that is opaque.
+        float within = sampling_chance / (1.0 + extinction * length_of_step * steps * (1.0 - sampling_chance));
+        float at = mix(segment.near, segment.far, lambda + (steps * within - sampling_start) * share);
         for (int k = 0; k < SAMPLING_PLACES; k++) {
             bool mine = stratum == float(k);
             sampling_places[k].weight = mine ? total : sampling_places[k].weight;
