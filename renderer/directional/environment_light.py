@@ -21,7 +21,7 @@ BANDS = (0, 1, 1, 1, 2, 2, 2, 2, 2, 4, 4, 4, 4, 4, 4, 4, 4, 4)
 COSINE = {0: math.pi, 1: 2 * math.pi / 3, 2: math.pi / 4, 4: -math.pi / 24}
 """What each band of radiance is multiplied by (Ramamoorthi & Hanrahan 2001, equation 8)."""
 
-SHARPEST = (ROWS / math.pi) ** 2
+SHARPEST = float(round((ROWS / math.pi) ** 2))
 """Exponent of the lobe that is as narrow as a texel of the picture itself; each smoother level has a quarter of it."""
 
 SMOOTHEST_ROWS = 8
