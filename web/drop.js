@@ -6,7 +6,7 @@ import { el } from "./dom.js";
 export class Drop {
   constructor(take) {
     this.input = el("input", { type: "file", hidden: true, "aria-label": "File to open", on: { change: () => this.input.files[0] && take(this.input.files[0]) } });
-    const veil = el("div", { class: "veil", hidden: true }, el("p", { class: "glass", text: "Drop a terrain, mesh, volume, picture or reflectance" }));
+    const veil = el("div", { class: "veil", hidden: true }, el("p", { class: "glass", text: "Drop a terrain, mesh, cloud of points, volume, picture or reflectance" }));
     document.body.append(this.input, veil);
     const over = (on) => (event) => {
       event.preventDefault();
