@@ -46,6 +46,7 @@ def run(
             share = lambda done, words, first=number: tell((first + done) / len(parts), words)  # noqa: E731
             PARTS[part](stage, share)
     finally:
+        stage.partial.close()
         text = write(folder, list(stage.known.values()))
     return text
 

@@ -16,15 +16,17 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 import renderer
-from renderer.comparing import converged, reference, truth
+from renderer.comparing import reference, truth
 from renderer.core.baking import bake_key
 from renderer.core.cache import key_of
 from renderer.core.registry import SHADERS, phenomenon
+from renderer.directional_partial import Partial
 from renderer.study.metrics import flip
 from renderer.study.silhouettes import apart, away
 from renderer.study.sweep import Drawn, append, compare, provenance, read
 from renderer.study_plan import SUNS, light_of
 from renderer.truth import code_of, truth_bake
+from renderer.view import exposure_of
 
 if TYPE_CHECKING:
     from renderer.session import Session
@@ -138,11 +140,15 @@ def cameras(box: np.ndarray) -> tuple[dict[str, Any], ...]:
     )
 
 
+STRIDE = 7
+"""From one view to the next in the order in which they are taken: the first few already look from high and low."""
+
+
 def pairs(views: int, suns: int) -> Iterator[list[tuple[int, str]]]:
     """Rounds of views and suns: each has every view once, and all of them every pair."""
     names = tuple(SUNS)[:suns]
     for turn in range(suns):
-        yield [(view, names[(view + turn) % suns]) for view in range(views)]
+        yield [(STRIDE * view % VIEWS, names[(view + turn) % suns]) for view in range(views)]
 
 
 @dataclass
@@ -168,6 +174,7 @@ class Stage:
         self.machine = provenance(self.session.gl.info.renderer)
         here = Path(renderer.__path__[0])
         self.code = code_of(SHADERS / SCENE, SHADERS / "lib", here / SCENE, here / "study")
+        self.partial = Partial(self.session)
         self.known = {line["key"]: line for line in read(self.results)}
 
     @property
@@ -191,7 +198,7 @@ class Stage:
         if key not in self.known:
             self.known[key] = {
                 "key": key, "part": part, "preset": self.preset, "view": view, "sun": sun, **asdict(setting),
-                **measure(self.session, state, size), "machine": self.machine, "when": int(time.time()),
+                **measure(self.partial, state, size), "machine": self.machine, "when": int(time.time()),
             }  # fmt: skip
             append(self.results, self.known[key])
         return self.known[key]
@@ -209,8 +216,8 @@ class Stage:
                     found.append(self.measured(part, setting, view, sun, SIZE, self._picture))
         return found
 
-    def _picture(self, session: Session, state: SceneState, size: int) -> dict[str, Any]:
-        picture, right = drawn(session, state, size)
+    def _picture(self, partial: Partial, state: SceneState, size: int) -> dict[str, Any]:
+        picture, right = drawn(partial, state, size)
         mask = away(right.linear[..., 3], AWAY * self.longest * size)
         whole = compare(picture, right)
         return {
@@ -225,18 +232,19 @@ class Stage:
         for number, setting in enumerate(settings):
             for view in range(self.views):
                 tell((number * self.views + view) / len(settings) / self.views, f"outline {view + 1} of {setting}")
-                sun = next(iter(SUNS))
-                found.append(self.measured("silhouette", setting, view, sun, size, _outline))
+                sun, side = next(iter(SUNS)), STRIDE * view % VIEWS
+                found.append(self.measured("silhouette", setting, side, sun, size, _outline))
         return found
 
 
-Measure = Callable[["Session", "SceneState", int], Mapping[str, Any]]
+Measure = Callable[[Partial, "SceneState", int], Mapping[str, Any]]
 
 
-def drawn(session: Session, state: SceneState, size: int) -> tuple[Drawn, Drawn]:
+def drawn(partial: Partial, state: SceneState, size: int) -> tuple[Drawn, Drawn]:
     """A state's converged picture, and its reference."""
-    found = truth(session, state, size, size)
-    return converged(session, state, size, size), reference(found, state.view, session.exposure_ev(state))
+    found = truth(partial.session, state, size, size)
+    picture = partial.drawn(state, size)
+    return picture, reference(found, state.view, exposure_of(state, partial.baked(state)))
 
 
 def within(picture: np.ndarray, right: np.ndarray, mask: np.ndarray) -> dict[str, float | None]:
@@ -248,8 +256,8 @@ def within(picture: np.ndarray, right: np.ndarray, mask: np.ndarray) -> dict[str
     return {"away": float(np.sqrt(off[mask].mean())) / level, "share": float(mask.mean())}
 
 
-def _outline(session: Session, state: SceneState, size: int) -> dict[str, Any]:
-    picture, right = drawn(session, state, size)
+def _outline(partial: Partial, state: SceneState, size: int) -> dict[str, Any]:
+    picture, right = drawn(partial, state, size)
     return asdict(apart(picture.linear[..., 3], right.linear[..., 3]))
 
 
@@ -264,9 +272,9 @@ def finer(stage: Stage, tell: Tell) -> Lines:
     fine, coarse = replace(BASE, shadow_directions=513), BASE
     turns = list(pairs(stage.views, stage.suns))
 
-    def measure(session: Session, state: SceneState, size: int) -> dict[str, Any]:
-        other: Any = session.state(SCENE, document={**state.model_dump(mode="json"), **_shadows(coarse)})
-        (few, right), (many, _) = drawn(session, other, size), drawn(session, state, size)
+    def measure(partial: Partial, state: SceneState, size: int) -> dict[str, Any]:
+        other: Any = partial.session.state(SCENE, document={**state.model_dump(mode="json"), **_shadows(coarse)})
+        (few, right), (many, _) = drawn(partial, other, size), drawn(partial, state, size)
         mask = away(right.linear[..., 3], AWAY * stage.longest * size)
         seen = flip(few.rgb8, many.rgb8)
         level = float(right.linear[..., :3].mean())
