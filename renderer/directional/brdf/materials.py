@@ -14,6 +14,7 @@ from renderer.core.errors import InputError
 from renderer.core.params import Colour, Model, bake_arguments, param, radians_of
 from renderer.core.technique import Arrays, Bake
 from renderer.directional.brdf import models
+from renderer.directional.brdf.resident import rulers, tiles_across
 from renderer.world.brdf import AXES, BrdfTable, direction_of, made_one_at_the_pole
 from renderer.world.brdf_files import load_brdf
 
@@ -192,7 +193,9 @@ class File(Model):
             InputError: the file cannot be had, or used.
         """
         try:
-            return load_brdf(AssetStore().get(self.asset.removeprefix("asset:")).path)
+            table = load_brdf(AssetStore().get(self.asset.removeprefix("asset:")).path)
+            rulers(table), tiles_across(table.values.shape)  # refused here, where the document can be named
+            return table
         except InputError as failure:
             raise failure.at("material.asset") from None
 

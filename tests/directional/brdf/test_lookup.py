@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
+from renderer.core.cache import AssetStore
 from renderer.core.errors import LimitError
+from renderer.directional.brdf import resident
 from renderer.directional.brdf.lookup import between, coordinates_of, lookup
-from renderer.directional.brdf.materials import Metal, Satin, Validation
+from renderer.directional.brdf.materials import File, Metal, Satin, Validation
 from renderer.directional.brdf.resident import plane, ruler, table_uniforms
 from renderer.reference.directional_brdf import reflected
 from renderer.reference.directional_world import Measured
@@ -133,3 +137,19 @@ def test_the_reference_reads_tables_alike_by_code_of_its_own(source: Validation 
     view, light = random_directions(500, 8), random_directions(500, 9)
     other = reflected(Measured(table.coordinates, table.nodes, table.values), view, light)
     np.testing.assert_allclose(lookup(table, view, light), other, rtol=1e-6, atol=1e-9)
+
+
+def test_a_file_that_no_texture_holds_is_refused_where_it_is_named(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("UMBRAGE_CACHE", str(tmp_path))
+    monkeypatch.setattr(resident, "SIDE", 40)
+    theta, phi = np.linspace(0, 90, 9), np.arange(0, 360, 15.0)
+    np.savez(tmp_path / "own.npz", brdf=np.ones((9, 9, 24, 3)), theta_o=theta, theta_l=theta, delta_phi=phi)
+    digest = AssetStore().put((tmp_path / "own.npz").read_bytes(), "brdf", "own.npz")
+    with pytest.raises(LimitError, match="view directions") as refused:
+        File(asset=f"asset:{digest}").table()
+    assert refused.value.field == "material.asset"
+    monkeypatch.undo()
+    monkeypatch.setenv("UMBRAGE_CACHE", str(tmp_path))
+    assert File(asset=f"asset:{digest}").table().values.shape == (9, 1, 9, 24, 3)
