@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections import OrderedDict
 from collections.abc import Hashable, Mapping
 from typing import TYPE_CHECKING, Any
@@ -16,6 +17,7 @@ from renderer.gl.program import AnyTexture
 from renderer.gl.resident import Resident
 from renderer.gl.source import Source
 from renderer.gl.targets import run_fullscreen
+from renderer.gl.textures import Wrap
 from renderer.shells.animation_scene import Animator, Moment
 from renderer.shells.course import texture_moment
 from renderer.shells.entries import Entries
@@ -46,6 +48,7 @@ class ShellsRenderer:
     def __init__(self, gl: GL) -> None:
         self._gl = gl
         self._sky = Resident(gl, 8)
+        self._tables = Resident(gl, 4)
         self._animator = Animator()
         self._following: Following | None = None
         self._shells: OrderedDict[Hashable, tuple[dict[str, Any], Placed]] = OrderedDict()
@@ -99,6 +102,7 @@ class ShellsRenderer:
             "shell_matter": texture.matter,
             "shell_normal": texture.normal,
             **self._sky_view(state, baked),
+            **self._tables_of(state, baked),
         }
         if texture.beside is not None:
             textures["filter_beside"] = texture.beside
@@ -119,6 +123,7 @@ class ShellsRenderer:
     def release(self) -> None:
         """Free everything."""
         self._sky.release()
+        self._tables.release()
         self.entries.release()
         self.rasters.release()
         if self._following is not None:
@@ -185,6 +190,16 @@ class ShellsRenderer:
             **sky_uniforms(now, sun),
         }
 
+    def _tables_of(self, state: ShellsState, baked: Baked) -> dict[str, AnyTexture]:
+        """Tables that techniques read."""
+        found: dict[str, AnyTexture] = {}
+        for slot, technique in state.techniques().items():
+            for sampler, (name, array) in technique.tables.items():
+                key = baked[name].key, array, state.voxels.wrap
+                make = functools.partial(_table, self._gl, baked[name].arrays[array], state.voxels.wrap)
+                found[f"{slot}_{sampler}"] = self._tables.get(key, make)["table"]  # type: ignore[assignment]
+        return found
+
     def _sky_view(self, state: ShellsState, baked: Baked) -> dict[str, AnyTexture]:
         elevation = angles(state.sun)[1]
 
@@ -192,6 +207,10 @@ class ShellsRenderer:
             return {"sky_view": self._gl.texture2d(sky_for(baked["sky"].arrays, elevation).view)}
 
         return dict(self._sky.get((baked["sky"].key, elevation), make))  # type: ignore[arg-type]
+
+
+def _table(gl: GL, values: np.ndarray, side: Wrap) -> Mapping[str, AnyTexture]:
+    return {"table": gl.texture3d(values, "linear", (side, side, "clamp"))}
 
 
 def holding(shell: Arrays, camera: Any) -> int:

@@ -25,6 +25,10 @@ class ShellsTechnique(Technique):
     """Of the slot `sampling`: whether it lights a ray as a whole, by `sampling_begin` and `sampling_rest` before and
     after its segments."""
 
+    tables: ClassVar[Mapping[str, tuple[str, str]]] = {}
+    """3D tables that it reads, by the name of the sampler: a bake of its own and an array of it, interpolated, which
+    repeat in u and v as the texture does."""
+
     def bakes(self, state: Any) -> list[Bake]:
         """The precomputations this technique needs beside the shell and its texture."""
         return []
