@@ -5,7 +5,7 @@
 // four blocks one over the other: of the sky's radiance with how steeply it came, F0 in colours, F1 with G0, and G1, as
 // renderer/shells/transfer.py has them; lobe, G over F, mean cosine to the sun of the light that comes to a place. colour: the share of light that a meeting leaves.
 // Deviations: the block lies level and repeats, whatever the shell does, and where it leans the sky is a smaller one; of how light
-// depends on the sun four harmonics are kept; the surface has no light that matter scattered on to it.
+// depends on the sun four harmonics are kept.
 // What it does not claim: surfaces within matter. Normals are not read, and voxels of the table blur what is solid.
 
 const float LIGHT_PI = 3.14159265358979;
@@ -43,9 +43,18 @@ vec3 light_source(Ray ray, float distance, vec3 place, float level, Matter matte
     return matter.colour * (arriving + glow * voxels_glow);
 }
 
-// The surface is lit by the sun that is left there and by the sky that matter leaves.
+// The surface is lit by the sun that is left there, and by what comes down to it: of the mean light right over it, one half comes
+// down, L, and one half comes up, colour (sun / pi + L).
 vec3 light_base(vec3 point, vec3 normal, bool sunlit, vec3 colour) {
     float facing = sunlit ? max(dot(normal, sun_direction), 0.0) : 0.0;
-    vec3 arriving = sun_irradiance * (facing * shadow_visibility(point)) + sky_irradiance * (0.5 * (1.0 + normal.z));
-    return colour * arriving / LIGHT_PI;
+    vec3 direct = sun_irradiance * (facing * shadow_visibility(point)) / LIGHT_PI;
+    vec4 u = tet_texel(tet_here, 4), v = tet_texel(tet_here, 5), w = tet_texel(tet_here, 6);
+    vec3 place = vec3(vec2(dot(u.xyz, point) + u.w, dot(v.xyz, point) + v.w) + texture_slide, 0.0);
+    vec3 sun = shell_size * (sun_direction * mat3(u.xyz, v.xyz, w.xyz));
+    vec4 f0 = light_read(place, 1.0);
+    float grey = max(dot(f0.rgb, vec3(1.0 / 3.0)), 1.0e-9);
+    float all = max(grey + 3.0 * dot(light_read(place, 2.0).xyz, sun) / max(length(sun), 1.0e-20), 0.0);
+    vec3 mean = sun_irradiance * f0.rgb * (all / grey / (4.0 * LIGHT_PI))
+              + sky_irradiance / LIGHT_PI * light_read(place, 0.0).rgb * (0.5 * (1.0 + normal.z));
+    return colour * (direct + max(2.0 * mean - colour * direct, 0.0) / (1.0 + colour));
 }

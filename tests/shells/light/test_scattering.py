@@ -16,6 +16,7 @@ from renderer.core.params import validate
 from renderer.core.technique import BakedArrays
 from renderer.gl.thread import GLThread
 from renderer.shells.bakes import bakes
+from renderer.shells.renderer import ShellsRenderer
 from renderer.shells.state import ShellsState
 from renderer.shells.transfer import TABLE, bake_transfer, coarsened, phase, transferred
 from renderer.world.sky import sky_for
@@ -119,6 +120,27 @@ def test_the_shader_is_its_twin_and_a_lobe_that_is_not_widened_is_found(
     with spoil(FILE, "light_phase(light_lobe * lobe, mu)", "light_phase(lobe, mu)"):
         wrong = thread.call(_picture, *slab, 8)[..., :3].mean(axis=(0, 1))
     assert abs(wrong / right - 1).max() > 0.05
+
+
+def test_white_matter_over_a_white_floor_looks_like_the_sky(
+    thread: GLThread, monkeypatch: pytest.MonkeyPatch, spoil: Callable
+) -> None:
+    """Where the sun is out: whatever share of it matter hides, floor and matter have the sky's radiance."""
+    white = {**SLAB, "texture": {**SLAB["texture"], "colour": [1, 1, 1]}, "base": {"colour": [1, 1, 1], "opaque": True}}
+    state, cache = validate(ShellsState, white), Cache()
+    baked = {bake.name: BakedArrays(bake_key(bake), bake_now(bake, cache)) for bake in bakes(state)}
+    light = ShellsRenderer._light
+
+    def without_sun(self: ShellsRenderer, *given: Any) -> dict[str, Any]:
+        return light(self, *given) | {"sun_irradiance": (0.0, 0.0, 0.0)}
+
+    monkeypatch.setattr(ShellsRenderer, "_light", without_sun)
+    sky = np.asarray(sky_for(baked["sky"].arrays, np.radians(50.0)).sky_irradiance) / np.pi
+    seen = thread.call(_picture, state, baked, 8)[..., :3].mean(axis=(0, 1))
+    np.testing.assert_allclose(seen, sky, rtol=0.01)
+    with spoil(FILE, "max(2.0 * mean - colour * direct, 0.0) / (1.0 + colour)", "mean / (1.0 + colour)"):
+        dim = thread.call(_picture, state, baked, 8)[..., :3].mean(axis=(0, 1))
+    assert (dim < 0.95 * sky).all()
 
 
 @pytest.mark.slow
