@@ -115,10 +115,10 @@ def test_the_shader_is_its_twin_and_a_lobe_that_is_not_widened_is_found(
     thread: GLThread, slab: tuple[ShellsState, Mapping[str, BakedArrays]], spoil: Callable
 ) -> None:
     right = expected(*slab)
-    seen = thread.call(_picture, *slab, 8)[..., :3].mean(axis=(0, 1))
+    seen = thread.call(_picture, *slab, 8, 1)[..., :3].mean(axis=(0, 1))
     np.testing.assert_allclose(seen, right, rtol=0.02)
     with spoil(FILE, "light_phase(light_lobe * lobe, mu)", "light_phase(lobe, mu)"):
-        wrong = thread.call(_picture, *slab, 8)[..., :3].mean(axis=(0, 1))
+        wrong = thread.call(_picture, *slab, 8, 1)[..., :3].mean(axis=(0, 1))
     assert abs(wrong / right - 1).max() > 0.05
 
 
@@ -136,10 +136,10 @@ def test_white_matter_over_a_white_floor_looks_like_the_sky(
 
     monkeypatch.setattr(ShellsRenderer, "_light", without_sun)
     sky = np.asarray(sky_for(baked["sky"].arrays, np.radians(50.0)).sky_irradiance) / np.pi
-    seen = thread.call(_picture, state, baked, 8)[..., :3].mean(axis=(0, 1))
+    seen = thread.call(_picture, state, baked, 8, 1)[..., :3].mean(axis=(0, 1))
     np.testing.assert_allclose(seen, sky, rtol=0.01)
     with spoil(FILE, "max(2.0 * mean - colour * direct, 0.0) / (1.0 + colour)", "mean / (1.0 + colour)"):
-        dim = thread.call(_picture, state, baked, 8)[..., :3].mean(axis=(0, 1))
+        dim = thread.call(_picture, state, baked, 8, 1)[..., :3].mean(axis=(0, 1))
     assert (dim < 0.95 * sky).all()
 
 
