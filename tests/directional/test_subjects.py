@@ -24,6 +24,10 @@ from renderer.world.mesh_normals import corner_normals, face_vectors
 BUILT_IN = ("dragon", "teapot", "basket", "knot", "rock", "tree", "relief")
 
 
+SMALL = {"basket": {"rows": 8, "stakes": 14}, "tree": {"species": "birch"}}
+"""Parameters that make a subject quick to make."""
+
+
 def silent(share: float, words: str) -> None:
     pass
 
@@ -40,7 +44,7 @@ def test_built_in_subjects_are_sound(kind: str, monkeypatch: pytest.MonkeyPatch)
     monkeypatch.setattr(knot, "ALONG", 700)
     monkeypatch.setattr(teapot, "FINER", dict.fromkeys(teapot.FINER, 3))
     monkeypatch.setattr(basket, "SIDES", 6)
-    made = baked({"kind": kind, "size": 3.0})
+    made = baked({"kind": kind, "size": 3.0, **SMALL.get(kind, {})})
     low, high = made["vertices"].min(axis=0), made["vertices"].max(axis=0)
     assert (high - low).max() == pytest.approx(3.0)
     assert low[2] == pytest.approx(0.0, abs=1e-9)
