@@ -13,7 +13,7 @@ from renderer.core.cache import AssetStore
 from renderer.core.errors import AssetError, InputError, LimitError
 from renderer.world.brdf_files import MERL_HEAD, MERL_SCALE, MERL_SHAPE, load_brdf
 from renderer.world.limits import Limits
-from renderer.world.upload import admit, recognise
+from renderer.world.upload import recognise
 from renderer.world.upload_preview import PREVIEWS
 
 THETA, PHI = np.array([0.0, 30, 60, 85]), np.array([0.0, 90, 180, 270])
@@ -60,12 +60,10 @@ def test_files_are_recognised_checked_and_kept(file: Path, tmp_path: Path) -> No
     own = npz(tmp_path / "own.npz", **SOUND)
     assert recognise(file) == recognise(own) == "brdf"
     store = AssetStore(tmp_path / "assets")
-    kept = admit(store, own, "satin.npz")
-    assert kept["kind"] == "brdf"
-    assert kept["preview"]["directions"] == [4, 4, 4]
-    assert kept["preview"]["values"] == {"lowest": 0.2, "highest": 0.2}
-    assert store.get(kept["asset"].removeprefix("asset:")).path.suffix == ".npz"
-    assert store.put(b"data", "brdf", "gold-metallic-paint.binary")
+    preview = PREVIEWS["brdf"](own, Limits(), {})
+    assert preview["directions"] == [4, 4, 4]
+    assert preview["values"] == {"lowest": 0.2, "highest": 0.2}
+    assert store.get(store.put(b"data", "brdf", "gold-metallic-paint.binary")).path.suffix == ".binary"
     assert PREVIEWS["brdf"](file, Limits(), {})["coordinates"] == "root_theta_h, theta_d, phi_d"
     with pytest.raises(InputError, match="leaves nothing unsaid"):
         PREVIEWS["brdf"](own, Limits(), {"scale": 1})

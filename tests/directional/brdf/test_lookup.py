@@ -45,9 +45,9 @@ def test_the_half_vectors_coordinates_are_rusinkiewiczs() -> None:
 
 def merl_like(source: Metal) -> BrdfTable:
     """The metal with the cells of a MERL file."""
-    nodes = source.table(MERL_SHAPE).nodes
-    assert tuple(len(axis) for axis in nodes) == (90, 1, 90, 180)
-    return source.table(MERL_SHAPE)
+    table = source.table(MERL_SHAPE)
+    assert table.values.shape == (90, 1, 90, 180, 3)
+    return table
 
 
 def test_a_files_own_coordinates_err_least() -> None:

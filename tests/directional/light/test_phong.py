@@ -84,8 +84,8 @@ def test_the_furnace_in_closed_form(shininess: float) -> None:
 
 
 def test_no_energy_is_made() -> None:
-    for shininess in (1.0, 3.0, 100.0):
-        for cosine in np.linspace(0.01, 1, 6):
+    for shininess in (1.0, 100.0):
+        for cosine in np.linspace(0.01, 1, 5):
             assert albedo(float(cosine), 0.5, shininess, 0.5) <= 1 + 1e-6
 
 
