@@ -28,7 +28,7 @@ CHOICE = 70
 TAUGHT = 1 << 15
 """Most points that books are learnt of."""
 
-ROUNDS = 3
+ROUNDS = 2
 """In which points are drawn to sets anew."""
 
 
