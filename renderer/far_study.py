@@ -29,7 +29,7 @@ from renderer.world.state import SceneState
 if TYPE_CHECKING:
     from renderer.session import Session
 
-TIMES = (1, 2, 4, 8, 16)
+TIMES = (2, 4, 8, 12, 16)
 """How many times as far as its own camera stands a preset is seen from."""
 
 PRESETS = ("fur", "teapot_relief", "teapot_wicker")
@@ -40,7 +40,7 @@ LINES = 512
 JUDGED = 32
 """Side of the references, pixels of 16 positions."""
 
-RAYS = 1 << 16
+RAYS = 1 << 14
 """Of a picture: the fewer pixels it has, the more samples each."""
 
 EXACT: Mapping[str, Any] = {
@@ -146,7 +146,7 @@ def _pixel(session: Session, preset: str, times: float) -> float:
     return float(2 * camera.distance * times * math.tan(math.radians(camera.field_of_view) / 2) / LINES)
 
 
-def sweeps(session: Session, presets: Sequence[str], techniques: str, times: float = 8.0) -> list[Plan]:
+def sweeps(session: Session, presets: Sequence[str], techniques: str, times: float = 16.0) -> list[Plan]:
     """The camera steps back from each preset by a thousandth of its distance, where coarser voxels are read."""
     plans = []
     for preset in presets:

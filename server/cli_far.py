@@ -20,7 +20,7 @@ def add(commands: Any) -> None:
     command.add_argument(
         "--techniques", metavar="KIND[:NAME=VALUE..],..", default="", help="filters, with parameters"
     )
-    command.add_argument("--times", metavar="N,..", default="", help="how many times as far (default 1,2,4,8,16)")
+    command.add_argument("--times", metavar="N,..", default="", help="how many times as far (default 2,4,8,12,16)")
     command.add_argument("--steady", action="store_true", help="flicker while the camera steps back, instead")
     command.add_argument("--docs", action="store_true", help="copy table and chart into docs/study")
     command.set_defaults(run=run)

@@ -68,22 +68,22 @@ def test_farther_off_the_picture_holds_as_much(session: Drawing) -> None:
 
 def test_brightness_is_of_the_lit_picture_and_opacity_of_the_bare_one(session: Drawing) -> None:
     told: list[float] = []
-    lines = far_study.measure(session, ["fur"], "none,mipmap", (1, 4), lambda share, words: told.append(share))  # type: ignore[arg-type]
+    lines = far_study.measure(session, ["fur"], "none,mipmap", (1, 8), lambda share, words: told.append(share))  # type: ignore[arg-type]
     found = {(line.label, line.times): (line.brightness, line.opacity) for line in lines}
-    assert found["none", 4] == pytest.approx((1.0, 1.0))
+    assert found["none", 8] == pytest.approx((1.0, 1.0))
     assert found["mipmap", 1] == pytest.approx((1.0, 1.0))
-    assert found["mipmap", 4] == found[far_study.DEFAULT, 4] == pytest.approx((1.1, 1.2))
+    assert found["mipmap", 8] == found[far_study.DEFAULT, 8] == pytest.approx((1.1, 1.2))
     assert told == sorted(told)
-    assert set(session.sizes) == {(512, 1), (128, 4)}, "fewer pixels have more samples"
+    assert set(session.sizes) == {(512, 1), (64, 4)}, "fewer pixels have more samples"
     assert lines[0].error == pytest.approx(0.01)
-    assert lines[3].pixel == pytest.approx(4 * lines[0].pixel)
+    assert lines[3].pixel == pytest.approx(8 * lines[0].pixel)
 
 
 def test_the_camera_steps_back_by_a_thousandth(session: Drawing) -> None:
     (plan,) = far_study.sweeps(session, ["fur"], "none,directional:bias=-1")  # type: ignore[arg-type]
     assert plan.sweep == "camera.distance"
     assert plan.stride * 0.01 == pytest.approx(0.001)
-    assert plan.width == 64
+    assert plan.width == 32
     assert [choice.label for choice in plan.choices] == ["none", "directional:bias=-1"]
 
 
