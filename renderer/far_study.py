@@ -22,7 +22,7 @@ from renderer.comparing import truth
 from renderer.core.channel import Progress
 from renderer.core.errors import InputError
 from renderer.steadying import CAMERA_STEP, PARAMETER_STEP, Plan
-from renderer.study.charts import COLOURS, plain_axes
+from renderer.study.charts import COLOURS
 from renderer.world.camera import Orbit
 from renderer.world.state import SceneState
 
@@ -191,13 +191,14 @@ def chart(lines: Sequence[Line], title: str) -> Figure:
             place.set_xscale("log", base=2)
             far = list(dict.fromkeys(line.times for line in lines))
             place.set_xticks(far, [f"{one:g}" for one in far])
-            plain_axes(place)
+            place.minorticks_off()
+            place.grid(True, alpha=0.3)
             if row == 0:
                 place.set_title(preset)
             if column == 0:
                 place.set_ylabel(f"{name}, % off the reference")
         axes[1][column].set_xlabel("times the preset's distance")
-    axes[0][-1].legend(fontsize="small")
+    figure.legend(*axes[0][0].get_legend_handles_labels(), loc="outside lower center", ncols=len(labels))
     return figure
 
 
