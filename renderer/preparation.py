@@ -58,14 +58,18 @@ def following(task: Task[dict[str, Arrays]], keep: Callable[[dict[str, Arrays]],
     done: Future[None] = Future()
 
     def settle(finished: Future[dict[str, Arrays]]) -> None:
-        failure = None if finished.cancelled() else finished.exception()
         if finished.cancelled():
             done.cancel()
-        elif failure is not None:
-            done.set_exception(failure)
-        else:
+            return
+        failure = finished.exception()
+        if failure is None:
             keep(finished.result())
+        if not done.set_running_or_notify_cancel():
+            return  # whoever waited for it has gone
+        if failure is None:
             done.set_result(None)
+        else:
+            done.set_exception(failure)
 
     task.future.add_done_callback(settle)
     return Preparation(done, task.cancel)
