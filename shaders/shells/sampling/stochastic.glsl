@@ -88,6 +88,24 @@ vec3 sampling_light(Ray ray, SamplingPlace chosen) {
     return chosen.weight > 0.0 ? chosen.weight * source : vec3(0.0);
 }
 
+// Takes the first place that is left: rays of few places, as those that meet a surface, are done before others.
+SamplingPlace sampling_next() {
+    SamplingPlace next = SamplingPlace(0.0, 0.0, 0);
+    for (int k = 0; k < SAMPLING_PLACES; k++) {
+        SamplingPlace place = sampling_places[k];
+        bool first = place.weight > 0.0 && next.weight == 0.0;
+        next.weight = first ? place.weight : next.weight;
+        next.at = first ? place.at : next.at;
+        next.tet = first ? place.tet : next.tet;
+        sampling_places[k].weight = first ? 0.0 : place.weight;
+    }
+    return next;
+}
+
 void sampling_rest(Ray ray, inout vec4 sum) {
-    for (int k = 0; k < SAMPLING_PLACES; k++) sum.rgb += sampling_light(ray, sampling_places[k]);
+    SamplingPlace next = sampling_next();
+    do {
+        sum.rgb += sampling_light(ray, next);
+        next = sampling_next();
+    } while (next.weight > 0.0);
 }
