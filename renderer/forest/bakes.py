@@ -31,7 +31,7 @@ def ground_bake(state: ForestState) -> Bake:
 def pattern_bake(state: ForestState) -> Bake:
     """The texture-cell atlas."""
     apart = {"apart": True} if state.cover.species_map else {}
-    return Bake("pattern", bake_pattern, bake_arguments(state.canopy) | apart, version=10, seconds=16)
+    return Bake("pattern", bake_pattern, bake_arguments(state.canopy) | apart, version=11, seconds=16)
 
 
 def terrain_horizon_bake(terrain: Bake, sectors: int) -> Bake:

@@ -24,6 +24,9 @@ AZIMUTHS = 4
 DARK = np.float32(1e-3)
 """Light that every voxel gets on top: where next to none comes down, matter counts as it stands."""
 
+CARRIED = 2
+"""Voxels of air beside matter that have its albedo: light is interpolated once on its way in, and once back."""
+
 OPAQUE = np.float32(1 - 2**-12)
 """Opacity at which extinction is cut off."""
 
@@ -51,7 +54,7 @@ def seen_levels(
     opacity = np.minimum(level["colour"][..., 3].astype(np.float32) / np.float32(255), OPAQUE)
     light, shown = _light(opacity, axes, layer, progress)
     sine = np.sin(ELEVATIONS).astype(np.float32)[:, None, None, None]
-    albedo = level["colour"][..., :3] / np.maximum(level["colour"][..., 3:], 1).astype(np.float32)
+    albedo = _albedo(level["colour"])
     anchor, made, rng = level["anchor"], {}, np.random.default_rng(1)
     for number in range(1, LEVELS + 1):
         weights = blocks(shown.mean(axis=0))
@@ -65,6 +68,18 @@ def seen_levels(
         colour = np.rint(np.clip(albedo, 0, 1) * 255).astype(np.uint8)
         made[f"seen_{number}"] = np.concatenate([colour, hidden[..., None], anchor], axis=-1)
     return made
+
+
+def _albedo(colour: np.ndarray) -> np.ndarray:
+    """Albedo (K, J, I, 3); air beside matter has the matter's, which reaches into it between voxels and shows there."""
+    total = colour.astype(np.float32)
+    for _ in range(CARRIED):
+        near = total
+        for axis in (1, 2):
+            near = near + np.roll(near, 1, axis) + np.roll(near, -1, axis)
+        total = np.where(total[..., 3:] > 0, total, near)
+    result: np.ndarray = total[..., :3] / np.maximum(total[..., 3:], np.float32(1e-12))
+    return result
 
 
 def _light(

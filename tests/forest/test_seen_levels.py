@@ -129,6 +129,24 @@ def test_colour_is_that_of_what_is_seen() -> None:
     assert found[[10, 20], ..., 3].min() >= 254
 
 
+def blackest(opacity: np.ndarray) -> float:
+    """Least albedo of what is seen, at any coarser level, of matter that has one albedo of 0.4."""
+    found = made(opacity)
+    seen = [found[f"seen_{number}"] for number in range(1, LEVELS + 1)]
+    return min(float(one[..., :3][one[..., 3] > 0].min()) for one in seen) / 255
+
+
+def test_the_rim_of_a_crown_has_its_albedo() -> None:
+    # The albedo is a byte times the opacity in the finest level, 0.5 of 30 at most off.
+    assert blackest(crowns()) > 0.4 - 0.5 / 30 - 0.5 / 255
+
+
+def test_a_black_rim_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What a direction's rays stop beside a crown is the crown's: counted as the air's own, it was black."""
+    monkeypatch.setattr(module, "CARRIED", 0)
+    assert blackest(crowns()) == 0
+
+
 def test_the_anchor_is_that_of_the_child_that_shows_most() -> None:
     opacity = np.zeros(SHAPE)
     opacity[8, 0, 1], opacity[8, 1, 0] = 200, 90
