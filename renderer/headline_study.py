@@ -7,6 +7,7 @@ judged is the middle of the picture that is timed, so that its voxels are as wid
 from __future__ import annotations
 
 import functools
+import itertools
 import json
 import math
 import time
@@ -109,17 +110,16 @@ def times(session: Session, states: Mapping[str, SceneState], frames: int) -> di
     yardstick, view = session.gl.call(Yardstick), session.view()
     taken: dict[str, dict[str, list[float]]] = {name: {} for name in states}
     try:
-        for turn in range((frames + WARM) if frames else 0):
-            for name, state in states.items():
-                for what in MOVES:
-                    unit = _both(lambda: session.gl.call(yardstick.draw_ms))
-                    # No two frames show the same, or one would be spared what the other has traced.
-                    shown = moved(state, what, 2 * turn + MOVES.index(what) + 1)
-                    session.prepare(shown).future.result()
-                    frame = _both(functools.partial(_drawn, view, shown))
-                    if turn >= WARM:
-                        taken[name].setdefault(what, []).append(frame[0] / unit[0])
-                        taken[name].setdefault(f"{what}_clock", []).append(frame[1] / unit[1])
+        # One setting and one motion at a time, so that each frame finds again what did not move.
+        for (name, state), what in itertools.product(states.items(), MOVES):
+            for turn in range((frames + WARM) if frames else 0):
+                unit = _both(lambda: session.gl.call(yardstick.draw_ms))
+                shown = moved(state, what, turn + 1)
+                session.prepare(shown).future.result()
+                frame = _both(functools.partial(_drawn, view, shown))
+                if turn >= WARM:
+                    taken[name].setdefault(what, []).append(frame[0] / unit[0])
+                    taken[name].setdefault(f"{what}_clock", []).append(frame[1] / unit[1])
     finally:
         view.close()
     return {name: {what: float(np.median(of)) for what, of in found.items()} for name, found in taken.items()}
