@@ -16,6 +16,7 @@ from server import (
     cli_headline,
     cli_leaves,
     cli_measure,
+    cli_orders,
     cli_serve,
     cli_stability,
     cli_study,
@@ -40,6 +41,7 @@ def parser(arguments: Sequence[str]) -> argparse.ArgumentParser:
     cli_far.add(commands)
     cli_headline.add(commands)
     cli_measure.add(commands, "measure" in arguments)
+    cli_orders.add(commands)
     cli_sunlight.add(commands, "sunstudy" in arguments)
     cli_study.add(commands)
     cli_stability.add(commands)
