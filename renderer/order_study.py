@@ -97,7 +97,8 @@ def table(found: Mapping[str, Any]) -> str:
     return (
         f"Orders of shells: {machine['renderer']}, {machine['cores']} cores\n\n"
         f"Wrong pixels in per cent (in brackets: relative RMSE) against the exact order of `{EXACT}`, "
-        f"{found['size']} px a side, one sample a pixel, 8 even samples a cell. A pixel is wrong that differs by more than {STEP:.4f} of "
+        f"{found['size']} px a side, one sample a pixel, 8 even samples a cell. A pixel is wrong that differs by more "
+        f"than {STEP:.4f} of "
         f"the brightest light.\n\n{_markdown(rows)}\n"
         "SXMPVO on a hollow sphere of more and more cells, CPU time of one sort (Dufort 2005, figure 4.6):\n\n"
         f"{_markdown(sorting)}"
