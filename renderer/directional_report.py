@@ -29,7 +29,7 @@ def run(
     session: Session, preset: str, folder: Path, views: int, suns: int, parts: Sequence[str],
     tell: Callable[[float, str], None],
 ) -> str:  # fmt: skip
-    """Measure what is not measured yet, and write table and charts of all there is.
+    """Measure what is not measured yet, and write table and charts of all there is of a preset.
 
     Args:
         session: draws, bakes and caches. preset: of the scene. folder: of the files.
@@ -47,7 +47,7 @@ def run(
             PARTS[part](stage, share)
     finally:
         stage.partial.close()
-        text = write(folder, list(stage.known.values()))
+        text = write(folder, [line for line in stage.known.values() if line["preset"] == preset])
     return text
 
 
