@@ -110,9 +110,10 @@ def _shells(
     from renderer.reference.shells import Options, render
     from renderer.reference.shells_world import ShellsWorld, Surface
 
-    base = world["base"]
-    plain = {name: value for name, value in world.items() if name != "base"} | dict(options)
-    shells = ShellsWorld(**plain, surfaces=() if base is None else (Surface(**base),))
+    opaque = ("base", "things")
+    plain = {name: value for name, value in world.items() if name not in opaque} | dict(options)
+    surfaces = tuple(Surface(**world[name]) for name in opaque if world[name] is not None)
+    shells = ShellsWorld(**plain, surfaces=surfaces)
     return _in_two(
         lambda places, seed, tell: render(shells, looking, places, Options(seed=1 + seed), tell), positions, progress
     )

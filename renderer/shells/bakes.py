@@ -9,6 +9,7 @@ from renderer.core.technique import Bake
 from renderer.shells.shell_bake import shell_bake as extruded_bake
 from renderer.shells.surfaces import bake_surface
 from renderer.shells.texture.sources import texture_bake
+from renderer.shells.things import bake_things, thing_arguments
 from renderer.world.sky import bake_sky
 
 if TYPE_CHECKING:
@@ -33,6 +34,8 @@ def shell_bake(state: ShellsState) -> Bake:
 def bakes(state: ShellsState) -> list[Bake]:
     """Every precomputation a state needs, inputs first, each once."""
     wanted = [sky_bake(state), surface_bake(state), shell_bake(state), texture_bake(state.texture)]
+    if state.things.list:
+        wanted.append(Bake("things", bake_things, thing_arguments(state.things), seconds=1))
     for technique in state.techniques().values():
         wanted += technique.bakes(state)
     return list({(bake.name, str(bake.arguments)): bake for bake in wanted}.values())

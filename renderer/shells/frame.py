@@ -23,9 +23,13 @@ from renderer.world.sun import direction
 if TYPE_CHECKING:
     from renderer.shells.renderer import ShellsRenderer
     from renderer.shells.state import ShellsState
+    from renderer.shells.thing_mesh import ThingMesh
 
 FAR = 1.0e30
 """What a picture from the sun holds where its rays meet nothing, as far away as can be."""
+
+DEPTHS = 1e-4
+"""Nearest distance that is drawn over the farthest, at least: a depth of 24 bits tells less apart."""
 
 
 @dataclass
@@ -37,6 +41,7 @@ class Frame:
         shell_key, texture_key: of what is drawn.
         place: where the shell stands. size, offset, sample: of the picture, as `SceneRenderer.prepare` has them.
         textures, values: samplers and uniforms that every pass may read.
+        things: other meshes of the scene, where there are any.
     """
 
     renderer: ShellsRenderer
@@ -50,6 +55,21 @@ class Frame:
     sample: int
     textures: dict[str, AnyTexture]
     values: dict[str, Any]
+    things: ThingMesh | None = None
+
+    def take(self, textures: Mapping[str, AnyTexture], values: Mapping[str, Any]) -> None:
+        """Let every later pass read these samplers and uniforms."""
+        self.textures |= textures
+        self.values |= values
+
+    def matrix(self) -> np.ndarray:
+        """Of the camera, over all that is drawn."""
+        camera, near_far = self.state.camera, reach(self.state.camera, self.place)
+        if self.things is not None:
+            other = reach(camera, self.things.place)
+            farthest = max(near_far[1], other[1])
+            near_far = max(min(near_far[0], other[0]), DEPTHS * farthest), farthest
+        return view_projection(camera, self.size, self.offset, self.place.centre, near_far)
 
     def entries(self) -> Layers:
         """Where the camera's rays come into the shell, layer by layer."""

@@ -63,6 +63,44 @@ PRESETS = {
             "sun": _sun(110, 40),
         },
     ),
+    "teapot_table": Preset(
+        "Wicker teapot on a table",
+        "Other meshes of the scene: they hide and shade the wicker, and it shades them.",
+        {
+            "surface": {"kind": "teapot"},
+            "extrusion": {"thickness": 0.05},
+            "texture": {"kind": "weave"},
+            "base": {"colour": [0.1, 0.06, 0.03]},
+            "camera": _camera(4.2, 165, 24, 35, -0.1),
+            "sun": _sun(250, 36),
+            "things": {
+                "list": [
+                    {"kind": "box", "position": [0, 0, -0.49], "width": 2.6, "depth": 2.0, "height": 0.08,
+                     "colour": [0.42, 0.25, 0.13]},
+                    {"kind": "ball", "position": [0.62, -0.62, -0.41], "radius": 0.14, "colour": [0.6, 0.25, 0.03]},
+                    {"kind": "ball", "position": [0.88, -0.45, -0.41], "radius": 0.13, "colour": [0.62, 0.3, 0.04]},
+                    {"kind": "ground", "position": [0, 0, -1.3], "size": 40, "colour": [0.3, 0.32, 0.3]},
+                ]
+            },
+        },
+    ),
+    "fur_pedestal": Preset(
+        "Fur on a pedestal",
+        "A ball of fur among other meshes: each hair of its edge is seen in the shadow on the ground.",
+        {
+            "camera": _camera(4.4, 150, 20, 35, -0.15),
+            "sun": _sun(225, 38),
+            "extrusion": {"thickness": 0.16},
+            "base": {"colour": [0.12, 0.07, 0.04]},
+            "things": {
+                "list": [
+                    {"kind": "ground", "position": [0, 0, -1.1], "size": 40, "colour": [0.34, 0.33, 0.3]},
+                    {"kind": "pedestal", "position": [0, 0, -1.1], "radius": 0.42, "height": 0.5},
+                    {"kind": "box", "position": [-0.9, 0.3, -1.1], "width": 0.4, "depth": 0.4, "height": 0.75},
+                ]
+            },
+        },
+    ),
     "vase_trees": Preset(
         "Vase, trees",
         "Opaque trees that stand out of a vase.",

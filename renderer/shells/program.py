@@ -63,16 +63,31 @@ void main() {
     entry = vec2(t, float(tet) + (BASE_OPAQUE == 1 && int(tet_texel(tet, 7)[owner % 4]) == BEYOND_BASE ? 0.5 : 0.0));
 }"""
 
+THINGS_DECLARATIONS = """uniform sampler2D thing_seen;     // light and distance (m) of other meshes, or 0
+uniform sampler2D thing_map;      // of the sun's view of them: distance (m), and how it grows from texel to texel
+uniform vec3 thing_origin;        // of the map's rays: corner, m
+uniform vec3 thing_across;        // texels/m
+uniform vec3 thing_down;
+uniform vec3 thing_along;         // unit vector away from the sun
+uniform float thing_texel;        // m
+uniform float thing_side;         // texels"""
+
 WALK_BODY = """layout(location = 0) out vec4 gathered;
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     Ray ray = pixel_ray(gl_FragCoord.xy);
     vec4 sum = vec4(0.0);
     gather_begin();
+#if THINGS == 1
+    thing_limit = thing_distance();
+#endif
     bool met = %s;
     for (int layer = 0; layer < entry_layers && !met && sum.a < OPAQUE; layer++) {
         vec2 entry = entry_of(pixel, layer);
         if (entry.y < 0.0) break;
+#if THINGS == 1
+        if (entry.x >= thing_limit) break;
+#endif
         if (entry_behind(entry)) {
             sum += (1.0 - sum.a) * vec4(base_radiance(ray, int(entry.y), BASE_FACE, entry.x), 1.0);
             break;
@@ -88,6 +103,10 @@ layout(location = 0) out vec4 radiance;
 void main() {
     vec4 sum = texelFetch(gathered, ivec2(gl_FragCoord.xy), 0);
     sum.rgb *= buffer_white;
+#if THINGS == 1
+    vec4 thing = texelFetch(thing_seen, ivec2(gl_FragCoord.xy), 0);
+    if (thing.a > 0.0) sum += (1.0 - sum.a) * vec4(thing.rgb, 1.0);
+#endif
     radiance = before_sky(sum.rgb, sum.a, pixel_ray(gl_FragCoord.xy).direction);
 }"""
 
@@ -107,6 +126,7 @@ class Variant:
     sky: bool
     opaque: bool
     interpolation: str
+    things: bool = False
 
     def defines(self) -> dict[str, str | int]:
         """Its macros."""
@@ -116,12 +136,14 @@ class Variant:
             "BASE_OPAQUE": int(self.opaque),
             "INTERPOLATION": self.interpolation.upper(),
             "OPAQUE": repr(OPAQUE),
+            "THINGS": int(self.things),
         }
 
 
 def variant_of(state: ShellsState) -> Variant:
     """What of a state is compiled in."""
-    return Variant(state.view.background == "sky", state.base.opaque, state.voxels.interpolation)
+    sky, things = state.view.background == "sky", bool(state.things.list)
+    return Variant(sky, state.base.opaque, state.voxels.interpolation, things)
 
 
 def entry_source(variant: Variant) -> Source:
@@ -162,8 +184,8 @@ def composed(
         after: files after them. body: `main`. more: declarations of the stage's own.
         version: of OpenGL, at least.
     """
-    files = [*FIRST]
-    declarations = [world_declarations(), more]
+    files = [*FIRST, "shells/things.glsl"] if variant.things else [*FIRST]
+    declarations = [world_declarations(), THINGS_DECLARATIONS if variant.things else "", more]
     macros = variant.defines()
     if techniques:
         files.append("shells/matter.glsl")
@@ -173,6 +195,8 @@ def composed(
         files += technique.includes
         files.append(glsl_file("shells", slot, technique.model_fields["kind"].default))
         declarations += technique_declarations(slot, technique)
+        if slot == "shadow":
+            files.append("shells/sun_visibility.glsl")
         if slot == "sampling":
             files.append("shells/gather.glsl")
             macros["SAMPLING_WHOLE"] = int(technique.whole)

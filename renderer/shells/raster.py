@@ -20,10 +20,9 @@ from renderer.gl.layers import check_drawable
 from renderer.gl.program import AnyTexture
 from renderer.gl.source import Source
 from renderer.shells.cells import Cells, facing
-from renderer.shells.frame import reach
 from renderer.shells.program import LIT_SLOTS, chosen, composed, variant_of
+from renderer.shells.thing_mesh import things_source
 from renderer.shells.world_scale import BASE
-from renderer.world.projection import view_projection
 
 if TYPE_CHECKING:
     from renderer.shells.frame import Frame
@@ -133,6 +132,11 @@ class Rasters:
             canvas.into_base.use()
             with switched(self.gl, moderngl.DEPTH_TEST):
                 self.cells(frame).base.draw(base_source(frame.state), frame.textures, placed_values(frame))
+        if frame.things is not None:
+            canvas.into_base.use()
+            with switched(self.gl, moderngl.DEPTH_TEST):
+                frame.things.draw(things_source(frame.state), frame.textures, placed_values(frame))
+            frame.textures["thing_seen"] = canvas.base
         return canvas
 
     def release(self) -> None:
@@ -170,9 +174,7 @@ def seen_faces(frame: Frame) -> np.ndarray:
 
 def placed_values(frame: Frame) -> dict[str, Any]:
     """The frame's uniforms with the matrix by which its triangles are drawn."""
-    camera = frame.state.camera
-    matrix = view_projection(camera, frame.size, frame.offset, frame.place.centre, reach(camera, frame.place))
-    return {**frame.values, "view_projection": matrix}
+    return {**frame.values, "view_projection": frame.matrix()}
 
 
 def gather_source(state: ShellsState) -> Source:

@@ -28,6 +28,7 @@ from renderer.shells.raster import Rasters
 from renderer.shells.resident import Placed, placed, shell_objects
 from renderer.shells.texture.block import reference_length, texture_of
 from renderer.shells.textures import Uploaded, upload
+from renderer.shells.thing_mesh import ThingMeshes
 from renderer.world.camera import Orthographic, pose
 from renderer.world.sky import sky_for, sky_uniforms
 from renderer.world.sun import angles, direction
@@ -55,6 +56,7 @@ class ShellsRenderer:
         self._textures: OrderedDict[Hashable, Uploaded] = OrderedDict()
         self.entries = Entries(gl)
         self.rasters = Rasters(gl)
+        self._things = ThingMeshes(gl)
 
     def prepare(
         self, state: ShellsState, baked: Baked, size: tuple[int, int], offset: tuple[float, float], sample: int
@@ -110,9 +112,10 @@ class ShellsRenderer:
             textures["sampling_voxels"] = texture.coded
         shown = (texture_key, then.slide)
         frame = Frame(self, state, arrays, shell_key, shown, place, size, offset, sample, textures, values)
-        looked, said = state.shadow.look(frame)
-        textures |= looked
-        values |= said
+        if "things" in baked:
+            frame.things = self._things.find(baked["things"], state.things, place)
+            frame.take(*frame.things.from_sun(direction(state.sun), state.things.resolution))
+        frame.take(*state.shadow.look(frame))
         prepared: Prepared = state.order.picture(frame)
         return prepared
 
@@ -126,6 +129,7 @@ class ShellsRenderer:
         self._tables.release()
         self.entries.release()
         self.rasters.release()
+        self._things.release()
         if self._following is not None:
             self._following.release()
             self._following = None

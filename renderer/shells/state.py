@@ -12,6 +12,7 @@ from renderer.shells.extrusion import Extrusion
 from renderer.shells.surfaces import Sphere, Surface
 from renderer.shells.texture.fur import Fur
 from renderer.shells.texture.sources import Texture
+from renderer.shells.things import Things
 from renderer.shells.voxels import Base, Voxels
 from renderer.world.atmosphere import Atmosphere
 from renderer.world.camera import Camera, Orbit
@@ -58,6 +59,7 @@ class ShellsState(SceneState):
     )
     voxels: Voxels = param(Voxels(), label="Voxels", help="How the texture is read.")
     base: Base = param(Base(), label="Base", help="The surface under the shell.")
+    things: Things = param(Things(), label="Other things", help="Opaque meshes that stand beside the shell.")
     air: Atmosphere = param(Atmosphere(), label="Air", help="What sun and sky shine through.", cost="bake")
     order: slot_union("shells", "order") = _slot(  # type: ignore[valid-type]
         "order", "Order", "In which order the segments of a ray are put together."

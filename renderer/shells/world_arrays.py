@@ -11,13 +11,14 @@ from renderer.core.technique import Arrays
 from renderer.shells.animation_scene import moment
 from renderer.shells.course import texture_moment
 from renderer.shells.texture.block import texture_of
+from renderer.shells.things import placed_things
 from renderer.world.sky import sky_for, sky_radiance
 from renderer.world.sun import angles, direction
 
 if TYPE_CHECKING:
     from renderer.shells.state import ShellsState
 
-NEEDS = ("sky", "surface", "shell", "texture")
+NEEDS = ("sky", "surface", "shell", "texture", "things")
 """Bakes that make the world."""
 
 
@@ -30,8 +31,8 @@ def world_arrays(state: ShellsState, baked: Mapping[str, Arrays]) -> dict[str, A
 
     Returns:
         By name, as `renderer.reference.shells_world.ShellsWorld` takes them: the shell's tetrahedra, the texture as it
-        is at the moment, the light, the surface under the shell where it is opaque, as plain arrays `base`, and the
-        background.
+        is at the moment, the light, the surface under the shell where it is opaque, as plain arrays `base`, other
+        meshes likewise as `things`, and the background.
     """
     elevation = angles(state.sun)[1]
     now, sun = sky_for(baked["sky"], elevation), direction(state.sun)
@@ -56,6 +57,7 @@ def world_arrays(state: ShellsState, baked: Mapping[str, Arrays]) -> dict[str, A
         "e_sun": tuple(float(v) for v in now.sun_irradiance),
         "e_sky": tuple(float(v) for v in now.sky_irradiance),
         "base": _base(state, at.surface) if state.base.opaque else None,
+        "things": _things(state, baked["things"]) if "things" in baked else None,
         "background": lambda directions: sky_radiance(now, sun, directions),
     }
 
@@ -69,3 +71,10 @@ def _base(state: ShellsState, surface: Arrays) -> dict[str, Any]:
         "albedo": np.broadcast_to(np.asarray(state.base.colour), corners.shape),
         "normals": surface["normals"][faces],
     }
+
+
+def _things(state: ShellsState, shapes: Arrays) -> dict[str, Any]:
+    """Corners, reflectance and normals of all other meshes, (F, 3, 3) each."""
+    placed = placed_things(state.things, shapes)
+    albedo = np.repeat(placed.albedo[:, None], 3, axis=1)
+    return {"corners": placed.corners, "albedo": albedo, "normals": placed.normals}

@@ -22,6 +22,9 @@ Segment cell_segment(Ray ray, float enter, vec4 a, vec4 b, vec4 c, vec4 u, vec4 
     bool between = near < far && far < 1.0e29;
     near = between ? near : enter;
     far = between ? far : enter;
+#if THINGS == 1
+    far = clamp(thing_distance(), near, far);
+#endif
     return way_segment(ray, near, far, u, v, w);
 }
 

@@ -15,6 +15,10 @@ float deep_share(vec3 point, float slack, float softness) {
     vec4 first = clamp((t - near) / max(vec4(near.yzw, far.x) - near, 1.0e-9), 0.0, 1.0);
     vec3 last = max((t - far.xyz) / max(vec3(far.yz, 2.0 * far.z - far.y) - far.xyz, 1.0e-9), 0.0);
     float depth = dot(first, SUN_FIRST) + dot(vec3(min(last.xy, 1.0), last.z), SUN_LAST);
+#if THINGS == 1
+    float left = (fract(-far.w) - 0.01) / 0.98;
+    if (far.w < 0.0) return t < floor(-far.w) * shadow_texel / SUN_EIGHTHS ? exp(-depth) : left;
+#endif
     float surface = t - floor(far.w) * shadow_texel / SUN_EIGHTHS;
     float at_surface = abs(surface) <= slack ? (fract(far.w) - 0.01) / 0.98 : 0.0;
     return surface < -slack ? exp(-depth) : at_surface;

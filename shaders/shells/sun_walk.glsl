@@ -1,12 +1,17 @@
 // What a ray from the sun passes on its way through the shell: a curve of how much of it is left, by the distances of eight steps.
 // Symbols: near, far: distances (m) at which the share of the sun falls below SUN_NEAR and SUN_FAR; depth, optical depth gathered;
-// stop, where the opaque surface is, in eighths of a texel of the sun's picture, with what is left of the sun there as a fraction.
+// stop, where the opaque surface is, in eighths of a texel of the sun's picture, with what is left of the sun there as a fraction;
+// where other meshes receive the light, negative for where the shell ends without a surface.
 
 const vec4 SUN_NEAR = vec4(6.993, 6.0, 5.0, 4.0) / 7.0;
 const vec3 SUN_FAR = vec3(3.0, 2.0, 1.0) / 7.0;
 const vec4 SUN_FIRST = log(SUN_NEAR / vec4(SUN_NEAR.yzw, SUN_FAR.x)); // depth from step to step
 const vec3 SUN_LAST = log(SUN_FAR / vec3(SUN_FAR.yz, 0.5 * SUN_FAR.z));
+#if THINGS == 1
+const float SUN_DARK = 6.0; // depth behind which nothing is left for what stands behind the shell
+#else
 const float SUN_DARK = 1.95; // depth behind the last step, from where the curve goes on as it is
+#endif
 const float SUN_EIGHTHS = 8.0;
 const float NEVER = 1.0e20;
 
@@ -72,6 +77,9 @@ bool sun_walk(Ray ray, int tet, float enter, inout SunWay way) {
         sun_stop(way, enter, min(sqrt(max(1.0 - along * along, 0.0)) / max(along, 0.01), 8.0));
         return true;
     }
+#endif
+#if THINGS == 1
+    way.stop = -(floor(SUN_EIGHTHS * enter / shadow_texel) + 0.01 + 0.98 * exp(-way.depth));
 #endif
     return false;
 }

@@ -29,6 +29,8 @@ class Walk(OrderTechnique):
     def picture(self, frame: Frame) -> tuple[Any, dict[str, AnyTexture], dict[str, Any]]:
         """Find where rays come in, and walk; what is gathered goes before the background."""
         inside = frame.values["start_tet"] >= 0
+        if frame.things is not None:
+            frame.textures["thing_seen"] = frame.things.seen(frame)
         source, layers = walk_source(frame.state, inside), frame.entries()
         kinds: tuple[Kind, ...] = ((4, frame.state.accumulation.dtype),)
         gathered = layers.draw(kinds, 0.0, source, frame.textures, frame.values, everywhere=inside)[0]

@@ -37,7 +37,7 @@ vec3 light_source(Ray ray, float distance, vec3 place, float level, Matter matte
     vec3 up = gradients[2] / max(length(gradients[2]), 1.0e-20);
     float rise = 3.0 * light_lobe * dot(ray.direction, up) * sky.a / max(dot(sky.rgb, vec3(1.0 / 3.0)), 1.0e-9);
     sky.rgb *= 0.5 * (1.0 + up.z) * max(1.0 + rise, 0.0);
-    vec3 arriving = sun_irradiance * (light_phase(light_lobe, mu) * shadow_visibility(ray.origin + distance * ray.direction) + later)
+    vec3 arriving = sun_irradiance * (light_phase(light_lobe, mu) * sun_visibility(ray.origin + distance * ray.direction) + later)
                   + sky_irradiance / LIGHT_PI * sky.rgb;
     float glow = matter_normal(place, level, matter, gradients).w;
     return matter.colour * (arriving + glow * voxels_glow);
@@ -47,7 +47,7 @@ vec3 light_source(Ray ray, float distance, vec3 place, float level, Matter matte
 // down, L, and one half comes up, colour (sun / pi + L).
 vec3 light_base(vec3 point, vec3 normal, bool sunlit, vec3 colour) {
     float facing = sunlit ? max(dot(normal, sun_direction), 0.0) : 0.0;
-    vec3 direct = sun_irradiance * (facing * shadow_visibility(point)) / LIGHT_PI;
+    vec3 direct = sun_irradiance * (facing * sun_visibility(point)) / LIGHT_PI;
     vec4 u = tet_texel(tet_here, 4), v = tet_texel(tet_here, 5), w = tet_texel(tet_here, 6);
     vec3 place = vec3(vec2(dot(u.xyz, point) + u.w, dot(v.xyz, point) + v.w) + texture_slide, 0.0);
     vec3 sun = shell_size * (sun_direction * mat3(u.xyz, v.xyz, w.xyz));

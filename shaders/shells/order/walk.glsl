@@ -10,6 +10,9 @@ bool order_walk(Ray ray, int tet, float enter, inout vec4 sum) {
     do {
         tet_here = tet;
         Exit exit = tet_exit(ray, tet, enter);
+#if THINGS == 1
+        exit.t = clamp(thing_limit, enter, exit.t);
+#endif
         sampling_segment(ray, tet_segment(ray, tet, enter, exit.t), sum);
         sum = accumulation_kept(sum);
         enter = exit.t;
@@ -19,6 +22,9 @@ bool order_walk(Ray ray, int tet, float enter, inout vec4 sum) {
         face = going ? exit.face : face;
         last = going ? tet : last;
         tet = tet_beyond(tet, face);
+#if THINGS == 1
+        tet = enter < thing_limit ? tet : BEYOND_TOP;
+#endif
         steps++;
     } while (tet >= 0 && steps < ORDER_STEPS && sum.a < OPAQUE);
 #if BASE_OPAQUE == 1
@@ -26,6 +32,9 @@ bool order_walk(Ray ray, int tet, float enter, inout vec4 sum) {
         sum += (1.0 - sum.a) * vec4(base_radiance(ray, last, face, enter), 1.0);
         return true;
     }
+#endif
+#if THINGS == 1
+    if (enter >= thing_limit) return true;
 #endif
     return false;
 }
