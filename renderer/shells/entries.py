@@ -18,6 +18,7 @@ from renderer.gl.meshes import Triangles
 from renderer.gl.program import AnyTexture
 from renderer.gl.source import Source
 from renderer.gl.targets import run_covered, run_fullscreen
+from renderer.shells.program import entry_sources
 from renderer.shells.world_scale import MOST_LAYERS
 
 VIEWS_KEPT = 4
@@ -30,17 +31,13 @@ class View:
 
     Attributes:
         key: of camera, sample and shell: equal ones have the same entries. size: (width, height) in pixels.
-        triangles: of the shell's boundary.
-        fragment: writes distance and tetrahedron of what is behind the layer before.
-        textures, values: what it reads, `view_projection` among them.
+        triangles: of the shell's boundary. projection: (4, 4) from metres round the shell's middle to clip space.
     """
 
     key: Hashable
     size: tuple[int, int]
     triangles: Triangles
-    fragment: Source
-    textures: Mapping[str, AnyTexture]
-    values: Mapping[str, Any]
+    projection: Any
 
 
 class _Sheet:
@@ -181,7 +178,7 @@ class Entries:
 
     def _peel(self, layers: Layers, view: View) -> bool:
         """Whether all layers found room."""
-        ctx, size = self._gl.ctx, view.size
+        ctx, size, fragments = self._gl.ctx, view.size, entry_sources()
         ctx.enable_only(moderngl.DEPTH_TEST | moderngl.CULL_FACE)
         query = ctx.query(samples=True)
         layers.begin()
@@ -193,10 +190,10 @@ class Entries:
             sheet, before = layers.sheets[layer % 2], layers.sheets[(layer + 1) % 2]
             sheet.framebuffer.use()
             sheet.framebuffer.viewport = (0, layer // 2 * size[1], *size)
-            here = {"layer_number": layer, "layer_row": layer // 2 * size[1], "before_row": (layer - 1) // 2 * size[1]}
-            textures, values = {**view.textures, "entry_before": before.texture}, {**view.values, **here}
+            rows = {"layer_row": layer // 2 * size[1], "before_row": (layer - 1) // 2 * size[1]} if layer else {}
+            textures = {"entry_before": before.texture} if layer else {}
             with query:
-                view.triangles.draw(view.fragment, textures, values)
+                view.triangles.draw(fragments[min(layer, 1)], textures, {"view_projection": view.projection, **rows})
             if query.samples == 0:
                 break
             layers.count = layer + 1

@@ -14,7 +14,7 @@ from renderer.gl.layers import Kind
 from renderer.gl.program import AnyTexture
 from renderer.gl.source import Source
 from renderer.shells.entries import Layers, View
-from renderer.shells.program import entry_source, variant_of
+from renderer.shells.program import variant_of
 from renderer.shells.resident import Placed
 from renderer.world.camera import Orthographic, camera_uniforms, pose
 from renderer.world.projection import view_projection
@@ -74,7 +74,7 @@ class Frame:
     def entries(self) -> Layers:
         """Where the camera's rays come into the shell, layer by layer."""
         key = (self.shell_key, self.state.camera, self.offset, variant_of(self.state).opaque)
-        return self._entries(key, self.state.camera, self.size, self.offset, self.values)
+        return self._entries(key, self.state.camera, self.size, self.offset)
 
     def from_sun(
         self, name: str, resolution: int, kinds: Mapping[str, Kind], source: Callable[[ShellsState], Source]
@@ -97,7 +97,7 @@ class Frame:
         seen = sun_values(camera, self.place, resolution)
         values = {**self.values, **seen, "picture_size": size, "pixel_offset": (0.5, 0.5)}
         values |= {"pixel_angle": 0.0, "pixel_side": max(camera.width / resolution, self._pixel())}
-        layers = self._entries(("sun", self.shell_key, camera), camera, size, (0.5, 0.5), values)
+        layers = self._entries(("sun", self.shell_key, camera), camera, size, (0.5, 0.5))
         reading = (self.texture_key, self.state.voxels, self.state.filter, variant_of(self.state))
         drawn = (name, values["pixel_side"], *reading)
         made = layers.draw(tuple(kinds.values()), FAR, source(self.state), self.textures, values, drawn)
@@ -110,12 +110,9 @@ class Frame:
         width = self.values["pixel_side"] + self.values["pixel_angle"] * away
         return float(2 ** (round(4 * math.log2(max(width, 1e-9))) / 4))
 
-    def _entries(
-        self, key: Any, camera: Any, size: tuple[int, int], offset: tuple[float, float], values: Mapping[str, Any]
-    ) -> Layers:
+    def _entries(self, key: Any, camera: Any, size: tuple[int, int], offset: tuple[float, float]) -> Layers:
         matrix = view_projection(camera, size, offset, self.place.centre, reach(camera, self.place))
-        triangles, fragment = self.renderer.triangles(self.shell_key), entry_source(variant_of(self.state))
-        view = View(key, size, triangles, fragment, self.textures, {**values, "view_projection": matrix})
+        view = View(key, size, self.renderer.triangles(self.shell_key), matrix)
         return self.renderer.entries.find(view)
 
 

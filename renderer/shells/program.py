@@ -46,21 +46,22 @@ uniform vec2 picture_size;
 uniform vec2 pixel_offset;        // of the sample within its pixel, from the top-left corner"""
 
 ENTRY_DECLARATIONS = """uniform sampler2D entry_before;
-uniform int layer_number;
 uniform int layer_row;            // px, where the layer begins in its texture
 uniform int before_row;"""
 
 ENTRY_BODY = """flat in float number;
 layout(location = 0) out vec2 entry;
 void main() {
-    int owner = int(number + 0.5), tet = owner / 4;
-    ivec2 pixel = ivec2(gl_FragCoord.xy) - ivec2(0, layer_row);
-    Ray ray = pixel_ray(gl_FragCoord.xy - vec2(0.0, float(layer_row)));
-    float t = plane_distance(ray, tet_texel(tet, owner % 4));
-    // Where the layer before found nothing, nothing is left.
-    vec2 before = layer_number > 0 ? texelFetch(entry_before, pixel + ivec2(0, before_row), 0).xy : vec2(-1.0e30, 0.0);
-    if (before.y < 0.0 || t <= before.x) discard;
-    entry = vec2(t, float(tet) + (BASE_OPAQUE == 1 && int(tet_texel(tet, 7)[owner % 4]) == BEYOND_BASE ? 0.5 : 0.0));
+    entry = vec2(gl_FragCoord.z, number);
+}"""
+
+NEXT_ENTRY_BODY = """flat in float number;
+layout(location = 0) out vec2 entry;
+void main() {
+    // Where the layer before found nothing, nothing is left. What lies in other rows has its depth rounded otherwise.
+    vec2 before = texelFetch(entry_before, ivec2(gl_FragCoord.xy) + ivec2(0, before_row - layer_row), 0).xy;
+    if (before.y < 0.0 || before.y == number || gl_FragCoord.z <= before.x + 5.0e-7) discard;
+    entry = vec2(gl_FragCoord.z, number);
 }"""
 
 THINGS_DECLARATIONS = """uniform sampler2D thing_seen;     // light and distance (m) of other meshes, or 0
@@ -83,7 +84,7 @@ void main() {
 #endif
     bool met = %s;
     for (int layer = 0; layer < entry_layers && !met && sum.a < OPAQUE; layer++) {
-        vec2 entry = entry_of(pixel, layer);
+        vec2 entry = entry_of(ray, pixel, layer);
         if (entry.y < 0.0) break;
 #if THINGS == 1
         if (entry.x >= thing_limit) break;
@@ -146,9 +147,13 @@ def variant_of(state: ShellsState) -> Variant:
     return Variant(sky, state.base.opaque, state.voxels.interpolation, things)
 
 
-def entry_source(variant: Variant) -> Source:
-    """The fragment stage that finds where rays come in."""
-    return composed((), variant, (), ENTRY_BODY, ENTRY_DECLARATIONS)
+@functools.cache
+def entry_sources() -> tuple[Source, Source]:
+    """The fragment stages that find where rays come in: for the first time, and anew behind a layer before.
+
+    They tell faces by their number and depths by the hardware's: small triangles shade many pixels that are not theirs.
+    """
+    return assemble([], body=ENTRY_BODY), assemble([], declarations=ENTRY_DECLARATIONS, body=NEXT_ENTRY_BODY)
 
 
 def walk_source(state: ShellsState, inside: bool) -> Source:

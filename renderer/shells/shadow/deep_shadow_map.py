@@ -32,7 +32,7 @@ void main() {
     bool met = false;
     int layer = 0;
     do {
-        vec2 entry = entry_of(pixel, layer);
+        vec2 entry = entry_of(ray, pixel, layer);
         if (entry.y < 0.0) break;
         if (entry_behind(entry)) {
             sun_stop(way, entry.x, 1.0);

@@ -29,7 +29,7 @@ void main() {
     bool met = false;
     int layer = 0;
     do {
-        vec2 entry = entry_of(pixel, layer);
+        vec2 entry = entry_of(ray, pixel, layer);
         if (entry.y < 0.0) break;
         met = sun_first(ray, int(entry.y), max(entry.x, 0.0), shadow_most, passed, depth);
         layer++;
