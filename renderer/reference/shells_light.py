@@ -105,12 +105,16 @@ def add_source(scene, tet, found, own, sunny):
 
 @inner
 def _picture(scene, face, x, y, c):
-    """A picture's value, bilinear, repeating."""
+    """A picture's value, bilinear, repeating; a globe's ends at the poles."""
     begin, rows, columns = scene.pictures[face, 0], scene.pictures[face, 1], scene.pictures[face, 2]
     x, y = x * columns - 0.5, y * rows - 0.5
     i, j = math.floor(x), math.floor(y)
     x, y = x - i, y - j
-    i, j, right, down = i % columns, j % rows, (i + 1) % columns, (j + 1) % rows
+    i, right = i % columns, (i + 1) % columns
+    if scene.pictures[face, 3] != 0:
+        j, down = min(max(j, 0), rows - 1), min(max(j + 1, 0), rows - 1)
+    else:
+        j, down = j % rows, (j + 1) % rows
     one, two = begin + j * columns, begin + down * columns
     upper = scene.texels[one + i, c] * (1.0 - x) + scene.texels[one + right, c] * x
     lower = scene.texels[two + i, c] * (1.0 - x) + scene.texels[two + right, c] * x
@@ -134,6 +138,10 @@ def face_at(scene, face, d, u, v, albedo):
     scale = (1.0 if scale > 0.0 else -1.0) / math.sqrt(max(x * x + y * y + z * z, 1e-300))
     left = w * uv[0, 0] + u * uv[1, 0] + v * uv[2, 0]
     down = w * uv[0, 1] + u * uv[1, 1] + v * uv[2, 1]
+    if scene.pictures[face, 3] != 0:
+        east, north = w * a[0] + u * b[0] + v * c[0], w * a[1] + u * b[1] + v * c[1]
+        left += 0.5 + math.atan2(north, east) / (2.0 * math.pi)
+        down += 0.5 + math.atan2(w * a[2] + u * b[2] + v * c[2], math.hypot(east, north)) / math.pi
     for k in range(3):
         albedo[k] = w * scene.albedo[face, 0, k] + u * scene.albedo[face, 1, k] + v * scene.albedo[face, 2, k]
         if scene.pictures[face, 1] > 0:

@@ -37,6 +37,8 @@ class Surface:
         normals: (F, 3, 3) at the corners, linear between them; None takes each face's own.
         uv: (F, 3, 2) where the corners lie in `picture`.
         picture: (H, W, 3) linear reflectance, row 0 at v = 0, texel centres at (i + 0.5) / W; it repeats.
+        globe: whether it is laid on by longitude and latitude round the origin instead, from 180 degrees west and the
+            south pole on, `uv` being added to their shares; it then ends at the poles.
     """
 
     corners: NDArray[np.floating]
@@ -44,6 +46,7 @@ class Surface:
     normals: NDArray[np.floating] | None = None
     uv: NDArray[np.floating] | None = None
     picture: NDArray[np.floating] | None = None
+    globe: bool = False
 
 
 @dataclass(frozen=True)
@@ -111,8 +114,8 @@ class Scene(NamedTuple):
         density: (K, J, I) extinction, 1/m; alpha where that is interpolated. occupied: (K + 1, J + 1, I + 1) whether
             there is any at the corners of the cells between eight centres, the first before the first centre.
         colour: (K, J, I, 3). normal: (K, J, I, 4), or of one voxel where there is none.
-        faces: tree of the triangles. corners, normals, albedo: (F, 3, 3). uv: (F, 3, 2). pictures: (F, 3), where its
-            texels begin, rows and columns; 0 rows for none. texels: (N, 3) of all pictures.
+        faces: tree of the triangles. corners, normals, albedo: (F, 3, 3). uv: (F, 3, 2). pictures: (F, 4), where its
+            texels begin, rows, columns, 0 rows for none, whether it is a globe's. texels: (N, 3) of all pictures.
         numbers: reference length, level, how far off a face a ray begins. lights: (4, 3), sun, e_sun, e_sky, glow.
         kinds: interpolation, light, whether the texture repeats, whether it has normals, whether shadows fall.
     """
@@ -248,7 +251,7 @@ def _opaque(surfaces: tuple[Surface, ...]) -> tuple[dict[str, Floats], NDArray[n
         albedo.append(np.broadcast_to(np.asarray(surface.albedo, np.float64), one.shape)[whole])
         uv.append(np.zeros((len(one), 3, 2))[whole] if surface.uv is None else np.asarray(surface.uv, float)[whole])
         shape = (0, 0) if surface.picture is None else surface.picture.shape[:2]
-        pictures.append(np.tile(np.array([begin, *shape], np.int64), (int(whole.sum()), 1)))
+        pictures.append(np.tile(np.array([begin, *shape, surface.globe], np.int64), (int(whole.sum()), 1)))
         if surface.picture is not None:
             texels.append(np.asarray(surface.picture, np.float64).reshape(-1, 3))
             begin += len(texels[-1])
@@ -259,7 +262,7 @@ def _opaque(surfaces: tuple[Surface, ...]) -> tuple[dict[str, Floats], NDArray[n
         "albedo": np.concatenate([nothing, *albedo]),
         "uv": np.concatenate([nothing[..., :2], *uv]),
         "texels": np.concatenate(texels),
-    }, np.concatenate([np.zeros((0, 3), np.int64), *pictures])
+    }, np.concatenate([np.zeros((0, 4), np.int64), *pictures])
 
 
 def tree(low: Floats, high: Floats, margin: float) -> Tree:

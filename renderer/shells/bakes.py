@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from renderer.core.params import bake_arguments
 from renderer.core.technique import Bake
+from renderer.shells.base_picture import NoPicture, picture_bake
 from renderer.shells.shell_bake import shell_bake as extruded_bake
 from renderer.shells.surfaces import bake_surface
 from renderer.shells.texture.sources import texture_bake
@@ -34,6 +35,8 @@ def shell_bake(state: ShellsState) -> Bake:
 def bakes(state: ShellsState) -> list[Bake]:
     """Every precomputation a state needs, inputs first, each once."""
     wanted = [sky_bake(state), surface_bake(state), shell_bake(state), texture_bake(state.texture)]
+    if not isinstance(state.picture, NoPicture) and state.base.opaque:
+        wanted.append(picture_bake(state.picture))
     if state.things.list:
         wanted.append(Bake("things", bake_things, thing_arguments(state.things), seconds=1))
     for technique in state.techniques().values():

@@ -181,12 +181,14 @@ PRESETS = {
     ),
     "earth_clouds": Preset(
         "Clouds over the Earth",
-        "A globe under semi-transparent clouds that cast their shadow.",
+        "The Earth under semi-transparent clouds that cast their shadow.",
         {
             "surface": {"kind": "sphere", "layout": "globe", "divisions": 12, "repeat_u": 4, "repeat_v": 2},
+            "picture": {"kind": "earth"},
             "extrusion": {"thickness": 0.05},
             "texture": {"kind": "clouds"},
-            "base": {"colour": [0.05, 0.11, 0.2]},
+            "voxels": {"density": 0.4},
+            "base": {"colour": [1, 1, 1]},
             "camera": _camera(2.7, 160, 18),
             "sun": _sun(100, 30),
             "course": {"period": 120, "keys": [{"at": 0}, {"at": 120, "slide_u": 1}]},

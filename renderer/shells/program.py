@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from renderer.core.params import defines, uniform_declarations
 from renderer.core.registry import glsl_file
 from renderer.gl.source import Source, assemble
+from renderer.shells.base_picture import Laid, laid_by
 from renderer.shells.voxels import Base, Voxels
 from renderer.shells.world_scale import OPAQUE
 from renderer.world.camera import CAMERA_DECLARATIONS
@@ -73,6 +74,14 @@ uniform vec3 thing_along;         // unit vector away from the sun
 uniform float thing_texel;        // m
 uniform float thing_side;         // texels"""
 
+PICTURE_DECLARATIONS = """uniform sampler2D base_picture;  // linear reflectance of the surface, rows upwards
+uniform vec3 picture_centre;     // the world's origin, m
+uniform float picture_turn;      // share of a turn, eastwards
+uniform vec2 picture_repeats;    // pictures a repeat of the texture"""
+
+LAID = {None: 0, "globe": 1, "texture": 2}
+"""How a picture is laid on the surface, to its number in `BASE_PICTURE`."""
+
 WALK_BODY = """layout(location = 0) out vec4 gathered;
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
@@ -128,6 +137,7 @@ class Variant:
     opaque: bool
     interpolation: str
     things: bool = False
+    picture: Laid | None = None
 
     def defines(self) -> dict[str, str | int]:
         """Its macros."""
@@ -138,13 +148,15 @@ class Variant:
             "INTERPOLATION": self.interpolation.upper(),
             "OPAQUE": repr(OPAQUE),
             "THINGS": int(self.things),
+            "BASE_PICTURE": LAID[self.picture],
         }
 
 
 def variant_of(state: ShellsState) -> Variant:
     """What of a state is compiled in."""
     sky, things = state.view.background == "sky", bool(state.things.list)
-    return Variant(sky, state.base.opaque, state.voxels.interpolation, things)
+    laid = laid_by(state.picture, state.base.opaque)
+    return Variant(sky, state.base.opaque, state.voxels.interpolation, things, laid)
 
 
 @functools.cache
@@ -190,13 +202,14 @@ def composed(
         version: of OpenGL, at least.
     """
     files = [*FIRST, "shells/things.glsl"] if variant.things else [*FIRST]
-    declarations = [world_declarations(), THINGS_DECLARATIONS if variant.things else "", more]
+    declarations = [world_declarations(), THINGS_DECLARATIONS if variant.things else "",
+                    PICTURE_DECLARATIONS if variant.picture else "", more]
     macros = variant.defines()
     if techniques:
         files.append("shells/matter.glsl")
     for slot, technique, build in techniques:
         if slot == "order":
-            files.append("shells/base.glsl")
+            files += ["shells/base.glsl", "shells/base_picture.glsl"]
         files += technique.includes
         files.append(glsl_file("shells", slot, technique.model_fields["kind"].default))
         declarations += technique_declarations(slot, technique)

@@ -185,7 +185,7 @@ def gather_source(state: ShellsState) -> Source:
 def base_source(state: ShellsState) -> Source:
     """The fragment stage that lights the opaque surface."""
     techniques = chosen(state, ("filter", "shadow", "light"))
-    return composed(techniques, variant_of(state), ("shells/base.glsl",), BASE_BODY)
+    return composed(techniques, variant_of(state), ("shells/base.glsl", "shells/base_picture.glsl"), BASE_BODY)
 
 
 def lit_source(state: ShellsState, body: str, more: str = "") -> Source:

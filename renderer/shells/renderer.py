@@ -19,6 +19,7 @@ from renderer.gl.source import Source
 from renderer.gl.targets import run_fullscreen
 from renderer.gl.textures import Wrap
 from renderer.shells.animation_scene import Animator, Moment
+from renderer.shells.base_picture import halves, laid_by, picture_values
 from renderer.shells.course import texture_moment
 from renderer.shells.entries import Entries
 from renderer.shells.following import Following
@@ -95,6 +96,7 @@ class ShellsRenderer:
             "shell_size": tuple(float(side) for side in arrays["texture"]["size"]),
             **uniforms(state.voxels, "voxels"),
             **uniforms(state.base, "base"),
+            **picture_values(state.picture, place.centre),
         }
         for slot, technique in state.techniques().items():
             values |= uniforms(technique, slot) | technique.constants(state, arrays)
@@ -105,6 +107,7 @@ class ShellsRenderer:
             "shell_normal": texture.normal,
             **self._sky_view(state, baked),
             **self._tables_of(state, baked),
+            **self._picture(state, baked),
         }
         if texture.beside is not None:
             textures["filter_beside"] = texture.beside
@@ -194,6 +197,14 @@ class ShellsRenderer:
             **sky_uniforms(now, sun),
         }
 
+    def _picture(self, state: ShellsState, baked: Baked) -> dict[str, AnyTexture]:
+        """What is painted on the surface."""
+        if "picture" not in baked:
+            return {}
+        found, globe = baked["picture"], laid_by(state.picture, True) == "globe"
+        make = functools.partial(_painted, self._gl, found.arrays["picture"], globe)
+        return dict(self._tables.get((found.key, globe), make))  # type: ignore[arg-type]
+
     def _tables_of(self, state: ShellsState, baked: Baked) -> dict[str, AnyTexture]:
         """Tables that techniques read."""
         found: dict[str, AnyTexture] = {}
@@ -215,6 +226,13 @@ class ShellsRenderer:
 
 def _table(gl: GL, values: np.ndarray, side: Wrap) -> Mapping[str, AnyTexture]:
     return {"table": gl.texture3d(values, "linear", (side, side, "clamp"))}
+
+
+def _painted(gl: GL, picture: np.ndarray, globe: bool) -> Mapping[str, AnyTexture]:
+    finest, *coarser = halves(picture)
+    texture = gl.texture2d(finest, "linear", "repeat", coarser)
+    texture.repeat_y = not globe  # it ends at the poles
+    return {"base_picture": texture}
 
 
 def holding(shell: Arrays, camera: Any) -> int:

@@ -7,6 +7,7 @@ from typing import Any, Literal
 from renderer.core.params import param
 from renderer.core.registry import slot_union
 from renderer.shells.animation import Motion, Still
+from renderer.shells.base_picture import BasePicture, NoPicture
 from renderer.shells.course import Course
 from renderer.shells.extrusion import Extrusion
 from renderer.shells.surfaces import Sphere, Surface
@@ -59,6 +60,9 @@ class ShellsState(SceneState):
     )
     voxels: Voxels = param(Voxels(), label="Voxels", help="How the texture is read.")
     base: Base = param(Base(), label="Base", help="The surface under the shell.")
+    picture: BasePicture = param(
+        NoPicture(), label="Picture on the base", help="What is painted on the surface under the shell."
+    )
     things: Things = param(Things(), label="Other things", help="Opaque meshes that stand beside the shell.")
     air: Atmosphere = param(Atmosphere(), label="Air", help="What sun and sky shine through.", cost="bake")
     order: slot_union("shells", "order") = _slot(  # type: ignore[valid-type]

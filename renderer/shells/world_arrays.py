@@ -9,6 +9,7 @@ import numpy as np
 
 from renderer.core.technique import Arrays
 from renderer.shells.animation_scene import moment
+from renderer.shells.base_picture import laid_by, placing
 from renderer.shells.course import texture_moment
 from renderer.shells.texture.block import texture_of
 from renderer.shells.things import placed_things
@@ -18,7 +19,7 @@ from renderer.world.sun import angles, direction
 if TYPE_CHECKING:
     from renderer.shells.state import ShellsState
 
-NEEDS = ("sky", "surface", "shell", "texture", "things")
+NEEDS = ("sky", "surface", "shell", "texture", "picture", "things")
 """Bakes that make the world."""
 
 
@@ -56,21 +57,27 @@ def world_arrays(state: ShellsState, baked: Mapping[str, Arrays]) -> dict[str, A
         "sun": tuple(float(v) for v in sun),
         "e_sun": tuple(float(v) for v in now.sun_irradiance),
         "e_sky": tuple(float(v) for v in now.sky_irradiance),
-        "base": _base(state, at.surface) if state.base.opaque else None,
+        "base": _base(state, at.surface, baked.get("picture", {}).get("picture")) if state.base.opaque else None,
         "things": _things(state, baked["things"]) if "things" in baked else None,
         "background": lambda directions: sky_radiance(now, sun, directions),
     }
 
 
-def _base(state: ShellsState, surface: Arrays) -> dict[str, Any]:
-    """Corners, reflectance and normals of the surface, (F, 3, 3) each."""
+def _base(state: ShellsState, surface: Arrays, picture: np.ndarray | None) -> dict[str, Any]:
+    """Corners, reflectance and normals of the surface, (F, 3, 3) each, and the picture on it (H, W, 3)."""
     faces = surface["faces"]
     corners = surface["vertices"][faces]
-    return {
+    plain = {
         "corners": corners,
         "albedo": np.broadcast_to(np.asarray(state.base.colour), corners.shape),
         "normals": surface["normals"][faces],
     }
+    if picture is None:
+        return plain
+    globe = laid_by(state.picture, True) == "globe"
+    repeats, turn = placing(state.picture)
+    uv = np.broadcast_to((-turn, 0.0), (*faces.shape, 2)) if globe else surface["corner_uv"] * repeats
+    return {**plain, "picture": picture, "globe": globe, "uv": uv}
 
 
 def _things(state: ShellsState, shapes: Arrays) -> dict[str, Any]:

@@ -4,6 +4,8 @@
 
 const int BASE_ROW = 512; // prisms a row of texels
 
+vec3 base_reflectance(vec3 point, int tet, float distance);
+
 // Smooth normal of a place on the surface, under the first tetrahedron of a prism.
 vec3 base_normal(int tet, vec3 point) {
     int prism = tet / 3;
@@ -23,5 +25,5 @@ vec3 base_radiance(Ray ray, int tet, int face, float t) {
     vec3 point = ray.origin + t * ray.direction, outward = tet_texel(tet, max(face, 0)).xyz;
     tet_here = tet;
     float side = dot(outward, ray.direction) > 0.0 ? 1.0 : -1.0;
-    return light_base(point, side * base_normal(tet, point), side * dot(outward, sun_direction) < 0.0, base_colour);
+    return light_base(point, side * base_normal(tet, point), side * dot(outward, sun_direction) < 0.0, base_reflectance(point, tet, t));
 }
