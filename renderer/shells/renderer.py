@@ -103,16 +103,11 @@ class ShellsRenderer:
         textures: dict[str, AnyTexture] = {
             "shell_tets": objects["shell_tets"],
             "shell_base": objects["shell_base"],
-            "shell_matter": texture.matter,
-            "shell_normal": texture.normal,
+            **_samplers(texture),
             **self._sky_view(state, baked),
             **self._tables_of(state, baked),
             **self._picture(state, baked),
         }
-        if texture.beside is not None:
-            textures["filter_beside"] = texture.beside
-        if texture.coded is not None:
-            textures["sampling_voxels"] = texture.coded
         shown = (texture_key, then.slide)
         frame = Frame(self, state, arrays, shell_key, shown, place, size, offset, sample, textures, values)
         if "things" in baked:
@@ -226,6 +221,12 @@ class ShellsRenderer:
 
 def _table(gl: GL, values: np.ndarray, side: Wrap) -> Mapping[str, AnyTexture]:
     return {"table": gl.texture3d(values, "linear", (side, side, "clamp"))}
+
+
+def _samplers(texture: Uploaded) -> dict[str, AnyTexture]:
+    found: dict[str, AnyTexture] = {"shell_matter": texture.matter, "shell_normal": texture.normal}
+    beside = {"filter_beside": texture.beside, "sampling_voxels": texture.coded}
+    return found | {name: made for name, made in beside.items() if made is not None}
 
 
 def _painted(gl: GL, picture: np.ndarray, globe: bool) -> Mapping[str, AnyTexture]:
