@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from typing import Annotated, Any, Literal
 
 import numpy as np
@@ -12,6 +13,7 @@ from renderer.core.params import Model, param
 from renderer.core.technique import Arrays
 from renderer.shells.animation_frames import KeyFrames, key_frames
 from renderer.shells.base_mesh import BaseMesh
+from renderer.shells.course import Course, between
 from renderer.shells.extrusion import Extrusion, directions
 from renderer.shells.shell import Shell, update_shell
 from renderer.shells.shell_bake import shell_of
@@ -94,15 +96,74 @@ class Bump(Model):
     frames: int = frames()
 
 
-Motion = Annotated[Still | NoiseMotion | Bend | Twist | Bump, Field(discriminator="kind")]
+class Keyed(Model):
+    """By the key frames: their bend, twist and swell."""
 
-Moving = NoiseMotion | Bend | Twist | Bump
+    kind: Literal["keys"] = "keys"
+    planes: Literal["computed", "interpolated"] = param(
+        "computed",
+        label="Planes and maps",
+        help="Computed at every moment, as its vertices are; or once in every key frame, and interpolated with them.",
+        cost="host",
+        source="Dufort 2005, section 5.3.3",
+    )
+
+
+Motion = Annotated[Still | NoiseMotion | Bend | Twist | Bump | Keyed, Field(discriminator="kind")]
+
+
+@dataclass(frozen=True)
+class Posed:
+    """Motion by key frames, with all that it depends on.
+
+    Args:
+        poses: time [s], bend, twist [deg] and swell [m] of each key frame, by rising times. period: of a round, s.
+        planes: as `Keyed` has it.
+    """
+
+    poses: tuple[tuple[float, float, float, float], ...]
+    period: float
+    planes: Literal["computed", "interpolated"]
+
+    @property
+    def frames(self) -> int:
+        """Key frames between which planes and maps are interpolated; 0 computes them at every moment."""
+        return len(self.poses) if self.planes == "interpolated" else 0
+
+    def at(self, time: float) -> tuple[float, float, float]:
+        """Bend, twist [rad] and swell [m] at a time [s]: even between two key frames."""
+        early, late, share = between([pose[0] for pose in self.poses], self.period, time)
+        one, other = self.poses[early], self.poses[late]
+        bend, twist, swell = (one[k] + share * (other[k] - one[k]) for k in (1, 2, 3))
+        return math.radians(bend), math.radians(twist), swell
+
+
+Moving = NoiseMotion | Bend | Twist | Bump | Posed
 
 AnyMotion = Still | Moving
 
 
+def motion_of(motion: Still | NoiseMotion | Bend | Twist | Bump | Keyed, course: Course) -> AnyMotion:
+    """What a document's motion does: that by key frames knows them; it is still where they pose nothing."""
+    if not isinstance(motion, Keyed):
+        return motion
+    keys = sorted(course.keys, key=lambda key: key.at)
+    if not any(key.bend or key.twist or key.swell for key in keys):
+        return Still()
+    return Posed(tuple((key.at, key.bend, key.twist, key.swell) for key in keys), course.period, motion.planes)
+
+
+def frame_times(motion: Moving) -> tuple[float, ...]:
+    """Times of a motion's key frames [s], rising."""
+    if isinstance(motion, Posed):
+        return tuple(pose[0] for pose in motion.poses)
+    return tuple(motion.period * number / motion.frames for number in range(motion.frames))
+
+
 def deformed(base: BaseMesh, motion: AnyMotion, time: float) -> np.ndarray:
     """The vertices (V, 3) [m] of a mesh at a time [s]; at 0 and after each period bend and twist leave it as it is."""
+    if isinstance(motion, Posed):
+        return _posed(base, *motion.at(time))
     phase = 0.0 if isinstance(motion, Still) else 2 * math.pi * time / motion.period
     if isinstance(motion, NoiseMotion):
         return base.vertices + motion.amplitude * _waves(base.vertices, motion, phase)
@@ -176,9 +237,9 @@ class MovingShell:
     def interpolate(self, motion: Moving, time: float) -> None:
         """Go to a time [s] between the motion's key frames; these are computed when they are first wanted."""
         if self._kept is None or self._kept[0] != motion:
-            times = [motion.period * number / motion.frames for number in range(motion.frames)]
+            times = frame_times(motion)
             places = [positions_at(self._base, self._length, self._extrusion, motion, then) for then in times]
-            self._kept = motion, key_frames(self.shell, places, motion.period)
+            self._kept = motion, key_frames(self.shell, places, times, motion.period)
         self.shell = self._kept[1].at(time)
 
     def arrays(self, surface: Arrays, shell: Arrays) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray]]:
@@ -199,6 +260,14 @@ def _waves(places: np.ndarray, motion: NoiseMotion, phase: float) -> np.ndarray:
     angle = np.einsum("nk,cwk->ncw", places, way) + start + pace * phase
     total: np.ndarray = np.sin(angle).sum(axis=-1) / math.sqrt(WAVES / 2)
     return total
+
+
+def _posed(base: BaseMesh, bend: float, twist: float, swell: float) -> np.ndarray:
+    """Swollen along the normals, then twisted, then bent."""
+    vertices = base.vertices
+    if swell:
+        vertices = vertices + swell * vertex_normals(base.vertices, base.faces)
+    return bent(twisted(vertices, twist) if twist else vertices, bend)
 
 
 def _bumped(base: BaseMesh, motion: Bump, phase: float) -> np.ndarray:

@@ -11,18 +11,24 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from renderer.core.errors import LimitError
+from renderer.shells.course import between
 from renderer.shells.shell import Shell, update_shell
+
+MOST_BYTES = 1 << 30
+"""Of a scene's key frames: its vertices, planes and maps."""
 
 
 @dataclass(frozen=True)
 class KeyFrames:
-    """Shells at even times of a motion that repeats.
+    """Shells at some times of a motion that repeats.
 
     Args:
-        shells: one for each key frame, of one topology. period: of the motion, s.
+        shells: one for each key frame, of one topology. times: of the key frames, rising, s. period: of the motion, s.
     """
 
     shells: tuple[Shell, ...]
+    times: tuple[float, ...]
     period: float
 
     @property
@@ -35,9 +41,8 @@ class KeyFrames:
 
         Planes get normals of unit length again; `volumes` stay those of the earlier key frame.
         """
-        place = time / self.period * len(self.shells) % len(self.shells)
-        early, late = self.shells[int(place)], self.shells[(int(place) + 1) % len(self.shells)]
-        share = place - int(place)
+        first, second, share = between(self.times, self.period, time)
+        early, late = self.shells[first], self.shells[second]
         if share == 0:
             return early
         planes = early.planes + share * (late.planes - early.planes)
@@ -50,9 +55,18 @@ class KeyFrames:
         )
 
 
-def key_frames(shell: Shell, positions: Sequence[np.ndarray], period: float) -> KeyFrames:
-    """Key frames from where the shell's vertices are in each, (2V, 3) [m]."""
-    return KeyFrames(tuple(update_shell(shell, places)[0] for places in positions), period)
+def key_frames(shell: Shell, positions: Sequence[np.ndarray], times: Sequence[float], period: float) -> KeyFrames:
+    """Key frames from where the shell's vertices are in each, (2V, 3) [m].
+
+    Raises:
+        LimitError: `course.keys`, more bytes than `MOST_BYTES`.
+    """
+    one = shell.positions.nbytes + shell.planes.nbytes + shell.to_texture.nbytes
+    if len(positions) * one > MOST_BYTES:
+        size = len(positions) * one >> 20
+        refused = f"{len(positions)} key frames of {len(shell.tets):,} tetrahedra take {size:,} MiB"
+        raise LimitError("course.keys", refused, f"{MOST_BYTES // one} key frames, or planes computed at every moment")
+    return KeyFrames(tuple(update_shell(shell, places)[0] for places in positions), tuple(times), period)
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from renderer.core.technique import Arrays, Outline
+from renderer.shells.animation import motion_of
 from renderer.shells.animation_scene import moment
 from renderer.shells.shell_bake import conflicting, shell_facts, shell_words
 from renderer.shells.shell_lines import UPRIGHT, shell_lines
@@ -36,7 +37,7 @@ def outline(state: ShellsState, arrays: Mapping[str, Arrays]) -> Outline:
         an offset, 3 across a side) plus `CONFLICT`, `SHORTER` and `THERE_BEFORE`.
     """
     baked = arrays["shell"]
-    now = moment(arrays["surface"], baked, state.extrusion, state.motion, state.time).shell
+    now = moment(arrays["surface"], baked, state.extrusion, motion_of(state.motion, state.course), state.time).shell
     positions, tets = now["positions"], baked["tets"]
     count = len(positions) // 2
     ends, kind, bad = shell_lines(tets, count, conflicting(baked))

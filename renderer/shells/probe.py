@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from renderer.core.technique import Arrays
+from renderer.shells.animation import motion_of
 from renderer.shells.animation_scene import moment
 from renderer.world.camera import rays
 
@@ -31,7 +32,8 @@ def probe(
     column, row = min(int(x * width), width - 1), min(int(y * height), height - 1)
     origins, directions = rays(state.camera, width, height, (x * width - column, y * height - row))
     origin, ray = origins[row, column], directions[row, column]
-    shell = moment(arrays["surface"], arrays["shell"], state.extrusion, state.motion, state.time).shell
+    motion = motion_of(state.motion, state.course)
+    shell = moment(arrays["surface"], arrays["shell"], state.extrusion, motion, state.time).shell
     near, far = crossings(shell["planes"], origin, ray)
     met = np.flatnonzero(far > near)
     if not len(met):

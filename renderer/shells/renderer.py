@@ -18,6 +18,7 @@ from renderer.gl.resident import Resident
 from renderer.gl.source import Source
 from renderer.gl.targets import run_fullscreen
 from renderer.gl.textures import Wrap
+from renderer.shells.animation import motion_of
 from renderer.shells.animation_scene import Animator, Moment
 from renderer.shells.base_picture import halves, laid_by, picture_values
 from renderer.shells.course import texture_moment
@@ -71,12 +72,14 @@ class ShellsRenderer:
             sample: its number, which turns the jitter.
         """
         arrays = {name: entry.arrays for name, entry in baked.items()}
-        now = self._animator.at(baked["surface"], baked["shell"], state.extrusion, state.motion, state.time)
+        motion = motion_of(state.motion, state.course)
+        now = self._animator.at(baked["surface"], baked["shell"], state.extrusion, motion, state.time)
         arrays |= {"surface": now.surface, "shell": now.shell}
         shell_key = (now.key, state.base.opaque)
         objects, place = self._shell(shell_key, now, baked["shell"], state)
         state = suited(state, place, arrays["texture"]["colour"].shape, size)
         then = texture_moment(state.texture, state.course, state.time, state.voxels.wrap == "repeat")
+        state = thinned(state, then.opacity)
         texture_key, texture = self._texture(state, baked, then.words, place)
         values = self._light(state, arrays) | moved(state.camera, size, place.centre)
         angle, width = pixel(state, size)
@@ -221,6 +224,14 @@ class ShellsRenderer:
 
 def _table(gl: GL, values: np.ndarray, side: Wrap) -> Mapping[str, AnyTexture]:
     return {"table": gl.texture3d(values, "linear", (side, side, "clamp"))}
+
+
+def thinned(state: ShellsState, opacity: float) -> ShellsState:
+    """A state whose matter has some times the extinction."""
+    if opacity == 1.0:
+        return state
+    voxels = state.voxels.model_copy(update={"density": state.voxels.density * opacity})
+    return state.model_copy(update={"voxels": voxels})
 
 
 def _samplers(texture: Uploaded) -> dict[str, AnyTexture]:

@@ -56,7 +56,7 @@ class ShellsState(SceneState):
     motion: Motion = param(Still(), label="Motion", help="How the surface moves as time runs.")
     texture: Texture = param(Fur(), label="Texture", help="What fills the shell.", cost="bake")
     course: Course = param(
-        Course(), label="Key frames", help="How the texture changes as time runs.", cost="host"
+        Course(), label="Key frames", help="What changes as time runs, and to what.", cost="host"
     )
     voxels: Voxels = param(Voxels(), label="Voxels", help="How the texture is read.")
     base: Base = param(Base(), label="Base", help="The surface under the shell.")

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from renderer.core.technique import Arrays
+from renderer.shells.animation import motion_of
 from renderer.shells.animation_scene import moment
 from renderer.shells.base_picture import laid_by, placing
 from renderer.shells.course import texture_moment
@@ -37,7 +38,8 @@ def world_arrays(state: ShellsState, baked: Mapping[str, Arrays]) -> dict[str, A
     """
     elevation = angles(state.sun)[1]
     now, sun = sky_for(baked["sky"], elevation), direction(state.sun)
-    at = moment(baked["surface"], baked["shell"], state.extrusion, state.motion, state.time)
+    motion = motion_of(state.motion, state.course)
+    at = moment(baked["surface"], baked["shell"], state.extrusion, motion, state.time)
     shell = at.shell
     then = texture_moment(state.texture, state.course, state.time, state.voxels.wrap == "repeat")
     texture = texture_of(baked["texture"], state.extrusion.thickness, **then.words)
@@ -46,7 +48,7 @@ def world_arrays(state: ShellsState, baked: Mapping[str, Arrays]) -> dict[str, A
         "tets": shell["tets"],
         "texture": shell["texture"] + (*then.slide, 0.0),
         "colour": texture.colour,
-        "reference_length": texture.reference_length / max(state.voxels.density, 1e-9),
+        "reference_length": texture.reference_length / max(state.voxels.density * then.opacity, 1e-9),
         "normal": texture.normal,
         "size": texture.size,
         "interpolation": state.voxels.interpolation,

@@ -26,7 +26,7 @@ def exact_at(time: float) -> Shell:
 
 def frames(count: int) -> KeyFrames:
     times = [MOTION.period * k / count for k in range(count)]
-    return key_frames(SHELL, [places(time) for time in times], MOTION.period)
+    return key_frames(SHELL, [places(time) for time in times], times, MOTION.period)
 
 
 def test_a_key_frame_is_exact_at_its_own_time() -> None:
@@ -41,7 +41,7 @@ def test_interpolation_errs_by_the_square_of_the_frames_distance() -> None:
     def at_middle(count: int) -> tuple[float, float, float]:
         time = MOTION.period * 1.5 / 64  # where the motion is fast, and always in the middle between two frames
         start = time - MOTION.period / count / 2
-        between = KeyFrames((exact_at(start), exact_at(start + MOTION.period / count)), 2.0).at(0.5)
+        between = KeyFrames((exact_at(start), exact_at(start + MOTION.period / count)), (0.0, 1.0), 2.0).at(0.5)
         error = frame_error(between, exact_at(time))
         return float(error.texture[2]), error.plane, error.place
 

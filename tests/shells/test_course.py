@@ -12,11 +12,12 @@ from renderer.core.cache import Cache
 from renderer.core.errors import InvalidDocument
 from renderer.core.params import validate
 from renderer.shells.bakes import bakes
-from renderer.shells.course import MOST_KEYS, Course, Key, key_at, texture_moment
+from renderer.shells.course import MOST_KEYS, Course, Key, between, key_at, texture_moment
 from renderer.shells.state import ShellsState
 from renderer.shells.texture.fur import Fur
 from renderer.shells.texture.rocks import Rocks
 from renderer.shells.world_arrays import world_arrays
+from tests.shells.conftest import even
 
 Draw = Callable[..., np.ndarray]
 KEYS = Course(period=8, keys=(Key(at=6, growth=1.0), Key(at=2, growth=0.2, slide_u=0.5), Key(at=4, growth=0.6)))
@@ -73,3 +74,32 @@ def test_the_references_world_slides_and_grows_alike() -> None:
     still = world_arrays(validate(ShellsState, {**document, "course": {}}), baked)
     np.testing.assert_allclose(now["texture"] - still["texture"], np.broadcast_to((0.25, 0, 0), now["texture"].shape))
     assert now["colour"][..., 3].sum() < 0.8 * still["colour"][..., 3].sum()
+
+
+def test_opacity_thins_all_matter_alike(draw: Draw) -> None:
+    """A key frame of half the opacity has half the optical depth, and the reference's world likewise."""
+    thick, thin = even(0.3), {"course": {"keys": [{"opacity": 0.5}]}}
+    passed = 1 - draw({}, thick)[..., 3]
+    np.testing.assert_allclose(1 - draw(thin, thick)[..., 3], np.sqrt(passed), rtol=1e-4)
+    for sampling in ({"kind": "stochastic", "jitter": 0.0}, {"kind": "dda"}):
+        np.testing.assert_allclose(
+            1 - draw({**thin, "sampling": sampling}, thick)[..., 3], np.sqrt(passed), rtol=0.02, err_msg=str(sampling)
+        )
+    document = {"scene": "shells", "surface": {"kind": "plane"}, "texture": {"kind": "uniform"}}
+    cache = Cache()
+    baked = {bake.name: bake_now(bake, cache) for bake in bakes(validate(ShellsState, document))}
+    states = [validate(ShellsState, {**document, **patch}) for patch in ({}, thin)]
+    lengths = [world_arrays(state, baked)["reference_length"] for state in states]
+    assert lengths[1] == pytest.approx(2 * lengths[0])
+
+
+def test_before_the_first_key_frame_comes_what_follows_the_last() -> None:
+    for times, period, time, expected in (
+        ((1.0, 3.0), 4.0, 0.5, (1, 0, 0.75)),
+        ((1.0, 3.0), 4.0, 3.5, (1, 0, 0.25)),
+        ((1.0, 3.0), 4.0, 2.0, (0, 1, 0.5)),
+        ((1.0, 4.0), 4.0, 0.25, (1, 0, 0.25)),
+        ((2.0,), 4.0, 3.0, (0, 0, 0.25)),
+        ((1.0, 1.0, 3.0), 4.0, 1.0, (1, 2, 0.0)),
+    ):
+        assert between(times, period, time) == pytest.approx(expected), (times, time)
