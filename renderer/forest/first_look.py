@@ -32,20 +32,27 @@ class FirstLook:
         self._kept: dict[tuple[tuple[int, int], int], tuple[Layers, Layers]] = {}
 
     def prepare(
-        self, state: ForestState, size: tuple[int, int], textures: Mapping[str, AnyTexture], values: Mapping[str, Any]
+        self,
+        state: ForestState,
+        side: int,
+        size: tuple[int, int],
+        textures: Mapping[str, AnyTexture],
+        values: Mapping[str, Any],
     ) -> tuple[Source, dict[str, AnyTexture], dict[str, Any]]:
         """Look for the sun and light a sample; what lays it into the bound framebuffer.
 
         Args:
-            state: its shadow technique has a `first_look`.
+            state: of the first sample.
+            side: pixels of a block's side that share a look at the sun; 1: the shadow technique answers at each pixel.
             size: (width, height) in pixels.
             textures, values: of the frame, with what was traced.
         """
-        side = state.shadow.first_look()
         looked, lit = self._targets(size, side)
-        looked.use()
-        run_fullscreen(self._gl, look_source(state, side), textures, values)
-        found = {**textures, "looked": looked.textures[0]}
+        found = dict(textures)
+        if side > 1:
+            looked.use()
+            run_fullscreen(self._gl, look_source(state, side), textures, values)
+            found["looked"] = looked.textures[0]
         lit.use()
         run_fullscreen(self._gl, shade_source(state, side), found, values)
         return smooth_source(state, side), {**textures, "lit": lit.textures[0]}, dict(values)

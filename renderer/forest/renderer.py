@@ -73,6 +73,7 @@ class ForestRenderer:
             offset: of the sample inside its pixel, from the top-left corner.
             sample: its number, which turns the jitter.
         """
+        look = 0 if sample else state.shadow.first_look()
         state = state if sample else state.first_sample()
         values = self._world(state, baked)
         textures: dict[str, AnyTexture] = self._world_textures(state, baked)
@@ -85,8 +86,8 @@ class ForestRenderer:
         values |= self._shadow_pass(state, baked, size, values, textures)
         self._technique_textures(state, baked, textures)
         held = {**textures, **self._sky(state, baked), **traced}
-        if sample == 0 and state.shadow.first_look():
-            return self._first.prepare(state, size, held, values)
+        if look:
+            return self._first.prepare(state, look, size, held, values)
         return shade_source(state), held, values
 
     def draw(self, prepared: Prepared) -> None:
@@ -222,7 +223,6 @@ class ForestRenderer:
         textures: dict[str, AnyTexture],
     ) -> AnyTexture:
         """Where the rays of each block of pixels begin; the same until the camera, the ground or the trees change."""
-
         key = (state.camera, size, baked["terrain"].key, baked["pattern"].key)
         found = dict(textures)
         for number, (side, store) in enumerate(self._scouts.items()):

@@ -264,4 +264,6 @@ class ForestState(SceneState):
 
     def first_sample(self) -> ForestState:
         """What the first sample of its picture is drawn as."""
-        return self.model_copy(update={"geometry": self.geometry.first_sample()})
+        return self.model_copy(
+            update={"geometry": self.geometry.first_sample(), "shadow": self.shadow.first_sample()}
+        )

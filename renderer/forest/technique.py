@@ -58,8 +58,8 @@ class ForestTechnique(Technique):
         return []
 
     def first_look(self) -> int:
-        """Pixels a side of the blocks that share one look at the sun in a picture's first sample; 0 where each pixel
-        has its own."""
+        """Pixels a side of the blocks that share one look at the sun in a picture's first sample, which is smoothed; 1
+        where its `first_sample` answers at each pixel, and 0 where nothing is smoothed."""
         return 0
 
     def first_sample(self) -> ForestTechnique:

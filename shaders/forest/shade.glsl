@@ -24,7 +24,7 @@ vec3 outgoing(vec4 place, vec4 voxel, float level, vec3 to_eye) {
     Skylight light = sky_light(Spot(place.xyz, matter.place, level, wooded, mix(1.0, texel.a, wooded)));
     vec3 from_sky = on_ground ? sky_on_ground(soil, slope, light) : sky_answer(matter, to_eye, light);
     float factor = mix(1.0, height_factor(h), wooded);
-#if LOOK > 0
+#if LOOK > 1
     float visible = looked_visibility();
 #else
     float visible = shadow_visibility(place.xyz, h, uv);

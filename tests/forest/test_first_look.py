@@ -36,7 +36,7 @@ def off(found: np.ndarray, wanted: np.ndarray) -> float:
     return float(np.sqrt(np.mean((found - wanted)[..., :3] ** 2)) / wanted[..., :3].mean())
 
 
-@pytest.mark.parametrize(("blocks", "share"), [(2, 0.85), (3, 1.0)])
+@pytest.mark.parametrize(("blocks", "share"), [(0, 0.8), (2, 0.85), (3, 1.0)])
 def test_the_first_sample_is_quieter_than_a_plain_one(
     thread: GLThread, painter: view.Painter, settled: np.ndarray, blocks: int, share: float
 ) -> None:
@@ -46,14 +46,27 @@ def test_the_first_sample_is_quieter_than_a_plain_one(
 
 
 def test_it_fades_from_the_picture(thread: GLThread, painter: view.Painter, settled: np.ndarray) -> None:
-    apart = off(drawn(thread, painter, 256, 3), drawn(thread, painter, 256, 1))
-    assert apart < off(drawn(thread, painter, 1, 3), settled) / 128
+    for blocks in (0, 3):
+        apart = off(drawn(thread, painter, 256, blocks), drawn(thread, painter, 256, 1))
+        assert apart < off(drawn(thread, painter, 1, blocks), settled) / 128
 
 
 def test_its_brightness_is_that_of_the_picture(thread: GLThread, painter: view.Painter, settled: np.ndarray) -> None:
     first = drawn(thread, painter, 1, 3)
     # One look for nine pixels: two deviations of the mean over some five hundred of them.
     assert first[..., :3].mean() == pytest.approx(settled[..., :3].mean(), rel=0.1)
+
+
+def test_what_voxels_know_of_the_sun_stands_for_rays_in_the_first_sample_alone(
+    thread: GLThread, painter: view.Painter, settled: np.ndarray
+) -> None:
+    first, looked = (drawn(thread, painter, 1, blocks) for blocks in (0, 3))
+    assert off(first, settled) < off(looked, settled)
+    kept = drawn(thread, painter, 1, 0, {"shadow": worlds.technique("shadow", "voxel_transmittance", strength=1.0)})
+    assert off(first, kept) > 0  # the same light, smoothed
+    assert first[..., :3].mean() == pytest.approx(kept[..., :3].mean(), rel=0.02)
+    second = [2 * drawn(thread, painter, 2, blocks) - one for blocks, one in ((0, first), (3, looked))]
+    np.testing.assert_allclose(*second, atol=1e-5)
 
 
 def test_longer_steps_of_the_first_sample_are_lost_in_its_noise(

@@ -10,6 +10,7 @@ import numpy as np
 from renderer.core.params import param
 from renderer.core.technique import Arrays, Bake
 from renderer.forest.land_shadow import shadow_bounds, stand_tops_bake
+from renderer.forest.shadow.voxel_transmittance import VoxelTransmittance
 from renderer.forest.technique import ForestTechnique
 from renderer.world.sun import angles
 
@@ -51,22 +52,28 @@ class SunMarch(ForestTechnique):
     )
 
     blocks: int = param(
-        3,
+        0,
         label="First look",
-        help="Pixels a side of the blocks that share one ray in the first sample, which is smoothed; 1: each has one.",
+        help="Pixels a side of the blocks that share one ray in the first sample, which is smoothed; 1: each has one; "
+        "0: none has, what the voxels know of the sun stands for it.",
         unit="px",
         cost="host",
-        ge=1,
+        ge=0,
         le=4,
     )
 
     def first_look(self) -> int:
-        """Blocks, unless each pixel has a ray of its own."""
-        return self.blocks if self.blocks > 1 else 0
+        """Blocks, unless each pixel has a ray of its own; 1 where none needs one."""
+        return {0: 1, 1: 0}.get(self.blocks, self.blocks)
+
+    def first_sample(self) -> ForestTechnique:
+        """Voxels' transmittance: it errs by less than one ray for nine pixels is noisy, and asks for no ray."""
+        return VoxelTransmittance() if self.blocks == 0 else self
 
     def bakes(self, state: ForestState, terrain: Bake, pattern: Bake) -> list[Bake]:
-        """The tops of the stands."""
-        return [stand_tops_bake(terrain, pattern)]
+        """The tops of the stands, and what the first sample needs."""
+        first = VoxelTransmittance().bakes(state, terrain, pattern) if self.blocks == 0 else []
+        return [stand_tops_bake(terrain, pattern), *first]
 
     def kept_textures(self, state: ForestState, baked: Mapping[str, Arrays]) -> dict[str, Sequence[np.ndarray]]:
         """Opacity, foot and rank of each voxel, half of what the view ray reads: the march looks everywhere."""
