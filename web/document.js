@@ -4,7 +4,7 @@ const isObject = (value) => value !== null && typeof value === "object" && !Arra
 
 /** The value at a dotted path, or undefined. */
 export function valueAt(document, path) {
-  return path.split(".").reduce((here, key) => (isObject(here) ? here[key] : undefined), document);
+  return path.split(".").reduce((here, key) => (isObject(here) || Array.isArray(here) ? here[key] : undefined), document);
 }
 
 /** The merge patch that sets one path. */
@@ -32,6 +32,12 @@ export function combine(first, second) {
     result[key] = inside ? combine(old, value) : value;
   }
   return result;
+}
+
+/** A list with one of its items changed by a merge patch; another `kind` starts it afresh. */
+export function withItem(list, index, patch) {
+  const old = list[index];
+  return list.with(index, (patch.kind ?? old.kind) === old.kind ? merge(old, patch) : patch);
 }
 
 /** True when two JSON values are equal. */

@@ -3,6 +3,7 @@
 import { el, humanise, segments } from "./dom.js";
 import { patchOf, valueAt } from "./document.js";
 import { controlFor } from "./controls.js";
+import { ListPart } from "./list.js";
 
 /** Controls of every field of `node` under `path`; `refresh` brings them up to date with a document. */
 export class Form {
@@ -15,7 +16,7 @@ export class Form {
   /** Add the control (or the nested form) of one field. */
   add(path, node) {
     const sort = this.context.schema.sort(node);
-    const part = sort === "union" ? new UnionPart(this.context, path, node) : sort === "object" ? this.inner(path, node) : controlFor(this.context, path, node);
+    const part = sort === "union" ? new UnionPart(this.context, path, node) : sort === "object" ? this.inner(path, node) : sort === "list" ? new ListPart(this.context, path, node) : controlFor(this.context, path, node);
     if (!part) return;
     this.parts.push(part);
     this.root.append(part.root);

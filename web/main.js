@@ -66,7 +66,7 @@ const sunStudy = part(() => import("./sunstudy.js"), ({ SunStudy }) => new SunSt
 const probe = part(() => import("./probe.js"), ({ Probe }) => new Probe(find("#probe"), link, store, () => sunBar));
 const compare = part(() => import("./compare.js"), ({ Compare }) => (window.umbrage.compare = new Compare(find("#compare"), screen, store, link, notices)));
 const runner = part(() => import("./running.js"), ({ Runner }) => new Runner(find("#timeline .time-row"), store, link));
-const editor = part(() => import("./shelleditor.js"), ({ ShellEditor }) => (window.umbrage.editor = new ShellEditor(find("#editor"), { screen, store, link, stats, pointer, notices, context: () => panels.context() })));
+const editor = part(() => import("./shelleditor.js"), ({ ShellEditor }) => (window.umbrage.editor = new ShellEditor(find("#editor"), { screen, store, link, stats, pointer, notices, context: () => panels.context(), run: runner })));
 const studies = part(() => import("./studies.js"), ({ Studies }) => new Studies(store, open));
 
 const tools = {

@@ -5,8 +5,9 @@ import { iconButton } from "./dom.js";
 const LONGEST_STEP = 0.1;
 
 /** Runs the field of the document that declares how fast it plays. Nothing runs on a hidden page: no frames are asked for. */
-export class Runner {
+export class Runner extends EventTarget {
   constructor(row, store, link) {
+    super();
     Object.assign(this, { store, running: false });
     this.button = iconButton("wind", "Let time run", () => (this.running ? this.stop() : this.start()), { "aria-pressed": "false" });
     row.append(this.button);
@@ -47,5 +48,6 @@ export class Runner {
     this.button.setAttribute("aria-pressed", String(running));
     this.button.setAttribute("aria-label", running ? "Hold time" : "Let time run");
     this.button.title = this.button.getAttribute("aria-label");
+    this.dispatchEvent(new Event("running"));
   }
 }

@@ -1,5 +1,8 @@
 // Reading the JSON schema of a scene's state: the one place that knows pydantic's form of it.
 
+/** Items of a list that people edit one by one; longer ones are painted. */
+const LONGEST_LIST = 64;
+
 /** The schema of one scene, with its references resolved on demand. */
 export class Schema {
   constructor(root) {
@@ -32,6 +35,7 @@ export class Schema {
     if (node.enum) return "choice";
     if (node.type === "boolean") return "switch";
     if (node.type === "number" || node.type === "integer") return "number";
+    if (node.type === "array" && node.items && node.maxItems <= LONGEST_LIST) return this.resolve(node.items).properties || node.items.oneOf ? "list" : "other";
     if (node.type === "array" && node.prefixItems) return this.isColour(node) ? "colour" : "vector";
     if (node.type === "string") return "text";
     return "other";
@@ -81,6 +85,10 @@ export class Schema {
     let node = this.resolve(this.root);
     let here = document;
     for (const key of path.split(".")) {
+      if (this.sort(node) === "list") {
+        [node, here] = [this.resolve(node.items), here?.[key]];
+        continue;
+      }
       if (this.sort(node) === "union") node = this.members(node).get(here?.kind);
       node = node?.properties?.[key] && this.resolve(node.properties[key]);
       here = here?.[key];

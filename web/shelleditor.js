@@ -5,6 +5,7 @@ import * as api from "./api.js";
 import { Brush } from "./brush.js";
 import { el, freshId, say, segments } from "./dom.js";
 import { Form } from "./form.js";
+import { KeyFrames } from "./keyframes.js";
 import { Lines, SORTS } from "./lines.js";
 
 const VIEWS = {
@@ -30,8 +31,8 @@ function decoded({ dtype, base64 }) {
 
 /** The left panel of the shells' scene. */
 export class ShellEditor {
-  constructor(root, { screen, store, link, stats, pointer, notices, context }) {
-    Object.assign(this, { root, screen, store, link, stats, notices, context });
+  constructor(root, { screen, store, link, stats, pointer, notices, context, run }) {
+    Object.assign(this, { root, screen, store, link, stats, notices, context, run });
     this.view = "cells";
     this.cameras = new Map([[stats.last?.version, store.accepted?.camera]]);
     this.lines = new Lines(screen.root, pointer.surface);
@@ -67,6 +68,7 @@ export class ShellEditor {
     this.controls = new Map();
     this.form = new Form({ ...this.context(), controls: this.controls });
     this.form.addFields("extrusion", node);
+    this.keys = new KeyFrames({ ...this.context(), controls: this.controls }, this.run);
     const views = segments("Lines over the picture", CHOICES, (view) => this.choose(view));
     this.radios = views.radios;
     this.facts = el("p", { class: "facts" });
@@ -75,7 +77,9 @@ export class ShellEditor {
     this.said = el("p", { class: "facts", role: "status" });
     this.root.querySelector(".panel-body").replaceChildren(
       el("div", { class: "form beside-brush" }, el("span", { class: "label", text: "Lines over the picture" }), views.group, this.key, this.facts, this.words),
-      this.brushPart(), el("div", { class: "beside-brush" }, this.form.root));
+      this.brushPart(), el("div", { class: "beside-brush" }, this.form.root),
+      el("details", { class: "fold beside-brush", open: this.store.document.course.keys.length > 0, on: { toggle: () => this.follow() } },
+        el("summary", {}, el("h3", { text: "Key frames" })), el("div", { class: "fold-body" }, this.keys.root)));
     this.follow();
   }
 
@@ -136,6 +140,7 @@ export class ShellEditor {
     if (!this.open) return;
     const { document } = this.store;
     this.form.refresh(document);
+    this.keys.refresh(document);
     for (const radio of this.radios) radio.checked = radio.value === this.view;
     this.clear.disabled = !document.extrusion.paint.length;
     const wanted = PARTS.map((name) => document[name]);

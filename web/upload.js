@@ -3,6 +3,7 @@
 
 import * as api from "./api.js";
 import { el, humanise, numberIn, terms } from "./dom.js";
+import { patchOf, valueAt } from "./document.js";
 import { bytes } from "./overlay.js";
 import { unitOf } from "./schema.js";
 
@@ -15,7 +16,7 @@ const MAPS = ["map", "image", "terrain"];
  * Where in the state a file of `kind` may go: `{path, title, reading, patch(asset, reading)}` for every text field made
  * for such a file; `reading` is the schema of what the file may leave unsaid, where the state has a place for that.
  */
-export function placesFor(schema, kind) {
+export function placesFor(schema, kind, document = {}) {
   const found = [];
   for (const [name, node] of schema.fields(schema.root)) {
     const title = node.title ?? humanise(name);
@@ -35,10 +36,23 @@ export function placesFor(schema, kind) {
       }
     }
     for (const [field, inner] of sort === "object" ? schema.fields(node) : []) {
+      if (schema.sort(inner) === "list") found.push(...placesIn(schema, kind, `${name}.${field}`, inner, valueAt(document, `${name}.${field}`) ?? []));
       if (schema.isAsset(inner)) add(field, inner, (asset) => ({ [name]: { [field]: asset } }));
     }
   }
   return found;
+}
+
+/** The same for a list, to which the file brings one more item. */
+function placesIn(schema, kind, path, node, list) {
+  const item = schema.resolve(node.items);
+  const members = schema.sort(item) === "union" && list.length < node.maxItems ? [...schema.members(item).values()] : [];
+  return members.flatMap((member) => schema.fields(member).filter(([, field]) => schema.isAsset(field) && field.umbrage?.takes?.includes(kind)).map(([field]) => {
+    const reading = new Map(schema.fields(member)).get("reading");
+    const fresh = schema.fresh(member);
+    const patch = (asset, said) => patchOf(path, [...list, { ...fresh, ...(reading ? { reading: { ...fresh.reading, ...said } } : {}), [field]: asset }]);
+    return { path, title: `one more of ${node.title}`, patch, reading };
+  }));
 }
 
 /** The dialog of a file. */
@@ -73,7 +87,7 @@ export class Upload {
 
   preview(file, { asset, kind, preview = {}, reading = {} }) {
     const { still_to_say: unsaid = "", ...facts } = preview;
-    const places = placesFor(this.store.schema, kind);
+    const places = placesFor(this.store.schema, kind, this.store.document);
     const rows = Object.entries({ kind, size: bytes(file.size), ...facts }).filter(([, value]) => value !== null && value !== "");
     const asked = new Reading(this.store.schema, places.find((place) => place.reading)?.reading, unsaid);
     const use = places.map((place) => el("button", { type: "button", class: "wide", text: `Use for: ${place.title.toLowerCase()}`,

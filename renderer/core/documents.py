@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, TypeVar
+from typing import Any, TypeVar, get_args, get_origin
 
 from pydantic import BaseModel, ValidationError
 from pydantic.fields import FieldInfo
@@ -111,6 +111,9 @@ def _resolve(model: type[BaseModel], loc: tuple[Any, ...]) -> tuple[list[Any], l
             owners = [current]
             continue
         path.append(key)
+        if isinstance(key, int) and get_origin(current) is tuple:
+            current = get_args(current)[0]
+            continue
         owners = models_in(current)
         owner = next((candidate for candidate in owners if key in candidate.model_fields), None)
         if owner is not None:
@@ -138,7 +141,7 @@ def _limit(context: Mapping[str, Any]) -> str:
 
 
 def set_path(document: dict[str, Any], path: str, value: Any) -> dict[str, Any]:
-    """A copy of `document` with the value at the dotted `path` replaced.
+    """A copy of `document` with the value at the dotted `path` replaced; items of lists are named by their numbers.
 
     Setting a `kind` drops the other fields of that union, which belong to the old kind.
 
@@ -149,17 +152,27 @@ def set_path(document: dict[str, Any], path: str, value: Any) -> dict[str, Any]:
     if not all(keys):
         raise InputError(_shown(path), "is not a parameter path", "names joined by dots, as shadow.kind")
     result = dict(document)
-    here = result
+    here: Any = result
     for key in keys[:-1]:
-        child = here.get(key, {})
-        if not isinstance(child, dict):
+        place = _place(here, key, path)
+        child = here[place] if isinstance(here, list) else here.get(place, {})
+        if not isinstance(child, (dict, list)):
             raise InputError(_shown(path), f"{_shown(key)} has no parameters of its own")
-        here[key] = dict(child)
-        here = here[key]
-    if keys[-1] == "kind" and here.get("kind") != value:
+        here[place] = child.copy()
+        here = here[place]
+    if keys[-1] == "kind" and isinstance(here, dict) and here.get("kind") != value:
         here.clear()
-    here[keys[-1]] = value
+    here[_place(here, keys[-1], path)] = value
     return result
+
+
+def _place(here: dict[str, Any] | list[Any], key: str, path: str) -> Any:
+    """What a part of a path is called in an object, or which item of a list it is."""
+    if not isinstance(here, list):
+        return key
+    if not key.isdecimal() or int(key[:9]) >= len(here):
+        raise InputError(_shown(path), f"{_shown(key)} is no item of its list", f"0 to {len(here) - 1}" if here else "")
+    return int(key[:9])
 
 
 def merge(document: dict[str, Any], patch: dict[str, Any]) -> dict[str, Any]:

@@ -11,8 +11,8 @@ from renderer.shells import surface_grids
 from renderer.shells.base_mesh import BaseMesh
 from renderer.world.mesh_normals import corner_normals
 
-BALL_CELLS = 64
-"""Of a ball, around it: its silhouette is at most 0.12 % of the radius inside of the sphere's."""
+BALL_CELLS = 96
+"""Of a ball, around it: its silhouette is at most 0.054 % of the radius inside of the sphere's."""
 
 PROFILE = np.array([
     (0.0, 0.0), (0.82, 0.0), (0.82, 0.1), (0.74, 0.14), (0.6, 0.17), (0.55, 0.22), (0.52, 0.5), (0.55, 0.78),

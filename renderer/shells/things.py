@@ -127,7 +127,7 @@ class Things(Model):
         source="Dufort 2005, section 5.3.1",
     )
     resolution: int = param(
-        512, label="Shadow texels", help="Along a side of the map of their shadows.", unit="px", cost="host", ge=16,
+        1024, label="Shadow texels", help="Along a side of the map of their shadows.", unit="px", cost="host", ge=16,
         le=4096,
     )
 

@@ -6,7 +6,7 @@
 // does not shade itself; where it rises towards the sun its middle counts, for there another triangle of the same body may begin. Which texel is read differs from sample to sample by up to half of one, whose mean is the filter. thing_seen,
 // light and distance (m) of what is seen of them, 0 where nothing is.
 
-const float THING_BIAS = 0.25; // texels behind the plane that are lit still: where the next triangle bends away from it
+const float THING_BIAS = 1.0; // texels behind the plane that are lit still: where the next triangle bends away from it
 
 float thing_visibility(vec3 point) {
     vec3 from = point - thing_origin;

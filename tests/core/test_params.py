@@ -233,3 +233,14 @@ def test_merge_follows_rfc_7396_but_for_kinds() -> None:
     assert merge(document, {"list": [3]})["list"] == [3]
     assert merge(document, {"list": {"x": 1}})["list"] == {"x": 1}
     assert document == {"shadow": {"kind": "soft", "width": 3}, "view": {"a": 1}, "list": [1, 2]}
+
+
+def test_set_path_reaches_items_of_lists() -> None:
+    document = {"things": [{"kind": "ball", "radius": 1}, {"kind": "box"}]}
+    assert set_path(document, "things.0.radius", 2)["things"] == [{"kind": "ball", "radius": 2}, {"kind": "box"}]
+    assert set_path(document, "things.0.kind", "box")["things"][0] == {"kind": "box"}
+    assert set_path(document, "things.1", {"kind": "cup"})["things"][1] == {"kind": "cup"}
+    assert document["things"][0]["radius"] == 1
+    for path in ("things.2.radius", "things.first.radius", "things.-1"):
+        with pytest.raises(InputError, match="no item of its list"):
+            set_path(document, path, 1)

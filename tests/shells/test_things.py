@@ -135,3 +135,9 @@ def test_an_uploaded_mesh_stands_as_large_as_it_is_said(tmp_path: Path, monkeypa
     assert np.allclose(places.min(axis=0), [0, -1, 0])
     assert np.allclose(places.max(axis=0), [2, 1, 1])
     assert np.allclose(placed.albedo, np.array([0.2, 0.4, 0.4])), "half of the red of a grey that no file named"
+
+
+def test_a_value_out_of_range_is_refused_where_the_document_has_it() -> None:
+    document = {"scene": "shells", "things": {"list": [{"kind": "ball"}, {"kind": "box", "width": 5000}]}}
+    with pytest.raises(InvalidDocument, match=r"^things\.list\.1\.width: .*at least 0\.001, at most 1000 m"):
+        validate(ShellsState, document)
