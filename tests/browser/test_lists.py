@@ -1,4 +1,4 @@
-"""Lists of the document on the page: things beside a shell, and key frames on their track, by pointer, finger and key."""
+"""Lists of the document on the page: things beside a shell, and key frames on their track, by mouse, finger and key."""
 
 from __future__ import annotations
 
