@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import moderngl
 import numpy as np
 
+from renderer.directional.tiles import Tiles
 from renderer.gl.context import GL
 from renderer.gl.layers import check_drawable
 from renderer.gl.program import AnyTexture
@@ -20,12 +21,13 @@ class Atlas:
 
     Args:
         gl: the context's objects. size: (width, height) in texels. count: points that a texel takes.
+        tiled: whether only blocks of pixels are looked at that may show a point.
 
     Raises:
         LimitError: larger than the machine can draw.
     """
 
-    def __init__(self, gl: GL, size: tuple[int, int], count: int) -> None:
+    def __init__(self, gl: GL, size: tuple[int, int], count: int, tiled: bool) -> None:
         check_drawable(gl, *size)
         self._gl = gl
         self.size, self.count = size, count
@@ -41,11 +43,19 @@ class Atlas:
         self._choosing = ctx.framebuffer(list(kinds), self._depth)
         self._shading = ctx.framebuffer([self.shaded], self._depth)
         self._shading.depth_mask = False
+        self._tiles = Tiles(gl, size) if tiled else None
         self._chosen: Any = None
         self._lit: Any = None
 
-    def choose(self, key: Any, source: Source, textures: Mapping[str, AnyTexture], values: Mapping[str, Any]) -> None:
-        """Find which points are seen, unless they are those of `key` already."""
+    def choose(
+        self, key: Any, source: Source, textures: Mapping[str, AnyTexture], values: Mapping[str, Any],
+        bounds: Callable[[], np.ndarray],
+    ) -> None:
+        """Find which points are seen, unless they are those of `key` already.
+
+        Args:
+            bounds: gives those of the blocks of pixels (`renderer.directional.tiles`), where they are asked for.
+        """
         if key == self._chosen:
             return
         self._chosen = self._lit = None
@@ -53,7 +63,11 @@ class Atlas:
         self._shading.clear(0.0, 0.0, 0.0, 0.0, depth=1.0)
         self._shading.depth_mask = False
         self._choosing.use()
-        run_fullscreen(self._gl, source, textures, values, writes_depth=True)
+        if self._tiles is None:
+            run_fullscreen(self._gl, source, textures, values, writes_depth=True)
+        else:
+            self._tiles.hold(bounds())
+            self._tiles.draw(source, textures, values)
         self._chosen = key
 
     def light(self, key: Any, source: Source, textures: Mapping[str, AnyTexture], values: Mapping[str, Any]) -> None:
@@ -80,6 +94,8 @@ class Atlas:
 
     def release(self) -> None:
         """Free everything."""
+        if self._tiles is not None:
+            self._tiles.release()
         self._choosing.release()
         self._shading.release()
         for texture in (self._points, self._depth, self.shaded, *([self._weights] if self._weights else [])):

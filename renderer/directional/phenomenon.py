@@ -19,8 +19,8 @@ SLOTS = (
         "selection",
         "Selection",
         "Which points are seen.",
-        "void selection_points(int face, vec3 place, vec3 to_eye, out uvec4 points, out vec4 weights) "
-        "// place on the face, m from the middle of the box",
+        "void selection_points(int face, vec3 place, vec3 to_eye, vec2 range, out uvec4 points, out vec4 weights) "
+        "// place on the face, m from the middle of the box; range, where along its ray points may lie, m",
         DEFAULTS["selection"],
     ),
     Slot(

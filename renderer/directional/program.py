@@ -12,6 +12,7 @@ from renderer.directional.environments import DECLARATIONS as SURROUNDINGS_DECLA
 from renderer.directional.environments import environment_macros
 from renderer.directional.hemisphere import hemisphere_of
 from renderer.directional.lamp import Lamp
+from renderer.directional.tiles import TILE
 from renderer.gl.source import Source, assemble
 from renderer.world.camera import CAMERA_DECLARATIONS
 from renderer.world.sky import SKY_DECLARATIONS
@@ -31,7 +32,9 @@ uniform vec2 picture_size;
 uniform vec2 pixel_offset;        // of the sample within its pixel, from the top-left corner"""
 
 SEEN_DECLARATIONS = """uniform usampler2DArray seen;     // point numbers
+uniform usampler2DArray seen_depth;
 uniform isampler2D seen_layer;    // of a direction and a face
+uniform sampler2D tile_bounds;    // nearest and farthest of a block of pixels, m from the eye
 uniform int strip_faces[3];       // that the strips of the picture of faces show"""
 
 LIGHT_DECLARATIONS = """uniform vec3 sun_direction;
@@ -57,15 +60,18 @@ void main() {
     camera_ray(picture_pixel(gl_FragCoord.xy, picture_size) - 0.5 + pixel_offset, origin, direction);
     Entry entry = box_entry(origin, direction);
     vec3 to_eye = -direction;
+    float before = dot(entry.place - origin, direction);
+    vec2 range = max(texelFetch(tile_bounds, ivec2(gl_FragCoord.xy) / TILE, 0).xy - before, 0.0);
 #else
     ivec2 at = ivec2(gl_FragCoord.xy);
     int face = strip_faces[at.x / TEXELS];
     Entry entry = Entry(face, face_place(face, (vec2(at.x % TEXELS, at.y) + 0.5) / float(TEXELS)));
     vec3 to_eye = towards_eye(entry.place);
+    vec2 range = vec2(0.0, 1.0e30);
 #endif
     uvec4 points;
     vec4 weights;
-    selection_points(max(entry.face, 0), entry.place, to_eye, points, weights);
+    selection_points(max(entry.face, 0), entry.place, to_eye, range, points, weights);
     if (entry.face < 0 || all(equal(points, uvec4(NO_POINT)))) discard;
 #if SELECTION_COUNT == 1
     chosen = points.x;
@@ -164,6 +170,7 @@ class Variant:
         return {
             "BACKGROUND_SKY": int(self.sky),
             "TEXELS": self.texels,
+            "TILE": TILE,
             "VIEW_AZIMUTHS": layout.azimuths,
             "VIEW_ELEVATIONS": layout.elevations,
             "SELECTION_COUNT": self.selection_count,

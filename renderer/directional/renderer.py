@@ -18,6 +18,7 @@ from renderer.directional.points import code_texels, surfel_texels
 from renderer.directional.program import draw_source, select_source, shade_source, variant_of
 from renderer.directional.seen import Seen
 from renderer.directional.technique import SHADOW_CODE
+from renderer.directional.tiles import bounds
 from renderer.gl.context import GL
 from renderer.gl.program import AnyTexture
 from renderer.gl.resident import Resident
@@ -69,11 +70,18 @@ class DirectionalRenderer:
         variant = variant_of(state, blocks)
         values = self._values(state, arrays, box, faces, size, offset)
         size_of = size if variant.per_pixel else (3 * variant.texels, variant.texels)
-        atlas = self._atlas((size_of, variant.selection_count), size_of, variant.selection_count)
+        atlas = self._atlas(size_of, variant.selection_count, variant.per_pixel)
         view = (state.camera, size, offset) if variant.per_pixel else (state.camera,)
         chosen = (baked["visibility"].key, state.cloud.position_bits, state.selection, view)
         seen = self._layers(state, baked, arrays, box, faces)
-        atlas.choose(chosen, select_source(state, variant), {**textures, **seen}, values)
+        reach = (box[1] - box[0]).max() / state.visibility.texels
+        atlas.choose(
+            chosen,
+            select_source(state, variant),
+            {**textures, **seen.textures},
+            values,
+            lambda: bounds(*seen.cells, reach, state.camera, box.mean(axis=0), size),
+        )
         lights = (state.cloud.position_bits, *(entry.key for entry in baked.values()), state.sun, *state.lighting())
         sky = self._sky_view(state, baked)
         atlas.light(lights, shade_source(state, variant), {**textures, **sky}, values)
@@ -128,20 +136,20 @@ class DirectionalRenderer:
 
     def _layers(
         self, state: DirectionalState, baked: Baked, arrays: Mapping[str, Arrays], box: np.ndarray, faces: list[int]
-    ) -> dict[str, AnyTexture]:
+    ) -> Seen:
         key, layout = baked["visibility"].key, hemisphere_of(state.visibility.directions)
         seen = _kept(
             self._seen,
             key,
             SEEN_KEPT,
-            lambda: Seen(self._gl, arrays["visibility"], state.visibility.texels, layout.count),
+            lambda: Seen(self._gl, arrays["visibility"], arrays["cloud"], state.visibility.texels, layout.count),
         )
         pairs = [(f, int(d)) for f in faces for d in directions_needed(state.camera, f, box, layout)]
         seen.hold(pairs or [(0, 0)])
-        return dict(seen.textures)
+        return seen
 
-    def _atlas(self, key: Hashable, size: tuple[int, int], count: int) -> Atlas:
-        return _kept(self._atlases, key, ATLASES_KEPT, lambda: Atlas(self._gl, size, count))
+    def _atlas(self, size: tuple[int, int], count: int, tiled: bool) -> Atlas:
+        return _kept(self._atlases, (size, count, tiled), ATLASES_KEPT, lambda: Atlas(self._gl, size, count, tiled))
 
     def _values(
         self,

@@ -1,7 +1,8 @@
 // The faces of the box, and which point each texel of a face sees from a direction. Porquet 2005.
 //
 // Symbols: face, 0 to 5: -x, +x, -y, +y, -z, +z; its axes u and v run along y z, x z or x y. TEXELS, d: a face has d x d
-// texels. seen, layers of point numbers; seen_layer, the layer of each face and direction, or -1.
+// texels. seen, layers of point numbers; seen_depth, of how
+// deep they lie, 65534 the box's depth; seen_layer, the layer of each face and direction, or -1.
 // Directions point from the surface to the eye, in the face's axes (u, v, outward normal).
 
 struct Entry {
@@ -47,6 +48,12 @@ vec3 onto_face(int face, vec3 place, vec3 towards) {
 uint seen_point(int face, int direction, ivec2 texel) {
     int layer = texelFetch(seen_layer, ivec2(direction, face), 0).x;
     return layer < 0 ? NO_POINT : texelFetch(seen, ivec3(texel, layer), 0).x;
+}
+
+// How deep below the face a texel's point lies [m], or less than 0 where there is none.
+float seen_depth_of(int face, int layer, ivec2 texel) {
+    uint depth = texelFetch(seen_depth, ivec3(texel, max(layer, 0)), 0).x;
+    return depth == 0xFFFFu ? -1.0 : float(depth) / 65534.0 * (box_high - box_low)[face / 2];
 }
 
 // Where a ray comes into the box from outside; not from within.

@@ -42,6 +42,20 @@ void hemisphere_around(vec3 direction, int azimuths, int elevations, out ivec4 a
     weights = vec4((1.0 - along.x) * vec2(1.0 - along.y, along.y), along.x * vec2(1.0 - along.y, along.y));
 }
 
+// The four directions round a unit direction with their weights, and how far along u and v each runs for one along the
+// normal.
+void hemisphere_slants(vec3 direction, int azimuths, int elevations, out ivec4 around, out vec4 weights, out vec4 u,
+                       out vec4 v) {
+    hemisphere_around(direction, azimuths, elevations, around, weights);
+    int zenith = azimuths * elevations;
+    vec2 row = vec2(around.xz / azimuths);
+    vec2 elevation = (row + 0.5) * HALF_PI / (float(elevations) + 0.5);
+    vec2 slant = vec2(cos(elevation.x) / sin(elevation.x), around.z == zenith ? 0.0 : cos(elevation.y) / sin(elevation.y));
+    vec2 turn = vec2(around.xy % azimuths) * (TURN / float(azimuths));
+    u = slant.xxyy * cos(turn).xyxy;
+    v = slant.xxyy * sin(turn).xyxy;
+}
+
 // Unit direction of a number.
 vec3 hemisphere_direction(int index, int azimuths, int elevations) {
     bool zenith = index == azimuths * elevations;

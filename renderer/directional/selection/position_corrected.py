@@ -19,7 +19,7 @@ class PositionCorrected(DirectionalTechnique):
 
     kind: Literal["position_corrected"] = "position_corrected"
     steps: int = param(
-        3, label="Steps", help="How often a place is carried to the face along each direction.", unit="count",
+        2, label="Steps", help="How often a ray is looked at while it crosses a texel of a direction.", unit="count",
         cost="build", ge=1, le=12,
     )
     reach: float = param(

@@ -3,7 +3,7 @@
 // Symbols: (theta, phi) of the view <-> directions, numbers of the face's hemisphere, with their weights (1).
 // No claim: four pictures from four places are laid over each other, so that what lies deep in the box shows twice.
 
-void selection_points(int face, vec3 place, vec3 to_eye, out uvec4 points, out vec4 weights) {
+void selection_points(int face, vec3 place, vec3 to_eye, vec2 range, out uvec4 points, out vec4 weights) {
     ivec2 texel = face_texel(face_coordinates(face, place));
     ivec4 directions;
     hemisphere_around(to_face(face, to_eye), VIEW_AZIMUTHS, VIEW_ELEVATIONS, directions, weights);

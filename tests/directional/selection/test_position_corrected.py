@@ -10,7 +10,7 @@ import pytest
 from renderer.gl.thread import GLThread
 from tests.directional.selection.world import NONE, Drawn, draw, orbit
 
-CORRECTED = {"kind": "position_corrected", "reach": 0.8, "steps": 4}
+CORRECTED = {"kind": "position_corrected", "reach": 0.8, "steps": 2}
 VIEWS = ((30, 25), (200, 8), (290, 60))
 
 
@@ -27,22 +27,25 @@ def off_the_ray(drawn: Drawn) -> np.ndarray:
 @pytest.mark.parametrize("view", VIEWS)
 def test_what_is_chosen_lies_on_the_ray(thread: GLThread, view: tuple[float, float]) -> None:
     drawn = draw(thread, {"selection": CORRECTED, "camera": orbit(*view)})
-    assert off_the_ray(drawn).max() < 0.81  # the reach
+    away = off_the_ray(drawn)
+    # A texel's line lies within the reach, and its point as far from it as 60,000 points are from each other.
+    assert away.max() < 0.8 + 0.3
+    assert np.percentile(away, 90) < 0.7
 
 
 @pytest.mark.parametrize("view", VIEWS)
 def test_edges_are_nearer_the_truth_than_the_nearest_has_them(thread: GLThread, view: tuple[float, float]) -> None:
     corrected = draw(thread, {"selection": CORRECTED, "camera": orbit(*view)}).wrong
     nearest = draw(thread, {"selection": {"kind": "nearest"}, "camera": orbit(*view)}).wrong
-    assert corrected < 0.12
-    assert corrected < 0.7 * nearest
+    assert corrected < 0.05
+    assert corrected < 0.35 * nearest
 
 
-def test_a_depth_that_is_never_corrected_is_found(thread: GLThread, spoil: Callable) -> None:
+def test_a_ray_without_parallax_is_found(thread: GLThread, spoil: Callable) -> None:
     with spoil(
         "directional/selection/position_corrected.glsl",
-        "depth = inside ? ahead : 0.5 * (within.x + within.y);",
-        "depth = 0.5 * span;",
+        "looks.drift_u = looks.to_eye.z * u - looks.to_eye.x;",
+        "looks.drift_u = vec4(0.0);",
     ):
         drawn = draw(thread, {"selection": CORRECTED, "camera": orbit(30, 25)})
-    assert drawn.wrong > 0.12
+    assert drawn.wrong > 0.05
