@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from renderer.comparing import displayed, place
+from renderer.comparing import displayed
 from renderer.core.baking import bake_key, bake_now
 from renderer.core.cache import key_of
 from renderer.core.registry import phenomenon
@@ -25,14 +25,15 @@ from renderer.gl.targets import Target
 from renderer.study.sweep import Drawn
 from renderer.truth import POSITIONS
 from renderer.view import exposure_of
+from renderer.world.sampling import offset
 
 if TYPE_CHECKING:
     from renderer.gl.context import GL
     from renderer.session import Session
     from renderer.world.state import SceneState
 
-KEPT = 12
-"""Of what follows from layers or points, in memory."""
+KEPT, FACES_KEPT = 12, 24
+"""Of what follows from points, and of what faces see from as many sides as a study has, in memory."""
 
 
 class Partial:
@@ -47,16 +48,21 @@ class Partial:
         self._phenomenon = phenomenon("directional")
         self._renderer: Any = session.gl.call(self._phenomenon.open)
         self._kept: OrderedDict[Hashable, Arrays] = OrderedDict()
+        self._layers: OrderedDict[Hashable, Arrays] = OrderedDict()
 
     def close(self) -> None:
         """Free what the GPU holds."""
         self.session.gl.call(lambda gl: self._renderer.release())
 
-    def drawn(self, state: SceneState, size: int) -> Drawn:
-        """The converged picture of a state, without a background: as `renderer.comparing.converged`."""
+    def drawn(self, state: SceneState, size: int, positions: int = POSITIONS) -> Drawn:
+        """The converged picture of a state, without a background: as `renderer.comparing.converged`.
+
+        Args:
+            state: a checked state. size: of the picture's sides [px]. positions: within a pixel.
+        """
         bare: Any = state.model_copy(update={"view": state.view.model_copy(update={"background": "none"})})
         baked = self.baked(bare)
-        linear = self.session.gl.call(self._picture, bare, baked, size)
+        linear = self.session.gl.call(self._picture, bare, baked, size, positions)
         return Drawn(linear, displayed(linear, state.view, exposure_of(state, baked)), None)
 
     def baked(self, state: Any) -> dict[str, BakedArrays]:
@@ -93,25 +99,26 @@ class Partial:
     def _faces(self, state: Any, subject: BakedArrays, cloud: BakedArrays) -> BakedArrays:
         camera, faces = state.camera, state.visibility
         key = key_of("partial faces", cloud.key, camera.model_dump(mode="json"), faces.model_dump(mode="json"))
-        return BakedArrays(key, self._keep(key, lambda: layers_of(camera, faces, subject.arrays, cloud.arrays)))
+        return BakedArrays(key, self._keep(key, lambda: layers_of(camera, faces, subject.arrays, cloud.arrays), True))
 
-    def _keep(self, key: Hashable, make: Callable[[], Arrays]) -> Arrays:
-        if key not in self._kept:
-            self._kept[key] = make()
-            while len(self._kept) > KEPT:
-                self._kept.popitem(last=False)
-        self._kept.move_to_end(key)
-        return self._kept[key]
+    def _keep(self, key: Hashable, make: Callable[[], Arrays], layers: bool = False) -> Arrays:
+        store, most = (self._layers, FACES_KEPT) if layers else (self._kept, KEPT)
+        if key not in store:
+            store[key] = make()
+            while len(store) > most:
+                store.popitem(last=False)
+        store.move_to_end(key)
+        return store[key]
 
-    def _picture(self, gl: GL, state: Any, baked: dict[str, BakedArrays], size: int) -> np.ndarray:
+    def _picture(self, gl: GL, state: Any, baked: dict[str, BakedArrays], size: int, positions: int) -> np.ndarray:
         target, total = Target(gl, size, size), np.zeros((size, size, 4))
         try:
-            for sample in range(POSITIONS):
-                prepared = self._renderer.prepare(state, baked, (size, size), place(sample), sample)
+            for sample in range(positions):
+                prepared = self._renderer.prepare(state, baked, (size, size), offset(sample), sample)
                 target.use()
                 self._renderer.draw(prepared)
                 total += target.read()
-            return total / POSITIONS
+            return total / positions
         finally:
             target.release()
 

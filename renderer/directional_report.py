@@ -10,6 +10,7 @@ import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
+from renderer import directional_settings as settings
 from renderer import directional_study as study
 from renderer.study.charts import COLOURS, MARKERS
 
@@ -52,10 +53,11 @@ def run(
 
 
 PARTS: Mapping[str, Callable[[study.Stage, Callable[[float, str], None]], Lines]] = {
-    "faces": lambda stage, tell: stage.swept("faces", study.FACES, tell),
-    "codes": lambda stage, tell: stage.swept("codes", study.CODES, tell),
+    "chief": lambda stage, tell: stage.swept("chief", settings.CHIEF, tell),
+    "faces": lambda stage, tell: stage.swept("faces", settings.FACES, tell),
+    "codes": lambda stage, tell: stage.swept("codes", settings.CODES, tell),
     "finer": study.finer,
-    "silhouettes": lambda stage, tell: stage.outlines(study.OUTLINES, tell),
+    "silhouettes": lambda stage, tell: stage.outlines(settings.OUTLINES, tell),
 }
 
 
@@ -63,7 +65,7 @@ def write(folder: Path, lines: Lines) -> str:
     """Table and charts of some results."""
     latest = {tuple(line[name] for name in (*NAMES, "part", "preset", "view", "sun")): line for line in lines}
     parts = {name: [line for line in latest.values() if line["part"] == name] for name in
-             ("faces", "codes", "silhouette", "finer")}  # fmt: skip
+             ("chief", "faces", "codes", "silhouette", "finer")}  # fmt: skip
     for name, figure in (
         ("faces", _by_directions(parts["faces"], ("away",), "relative RMSE away from silhouettes, median")),
         ("silhouettes", _by_directions(parts["silhouette"], ("median", "p95"), "pixels off, box of 400 pixels")),
@@ -85,11 +87,12 @@ def table(parts: Mapping[str, Lines]) -> str:
     text = [
         f"Directional textures against their reference: {presets}, {study.SIZE} px, {machine['renderer']}, "
         f"{machine['cores']} cores\n",
-        "Converged pictures at the reference's sixteen positions a pixel. *Away*: over pixels farther than a hundredth "
-        "of the box's longest side from the true outline, relative to their mean. Median and worst over views and "
-        "suns.\n",
+        f"Converged pictures at the reference's {study.POSITIONS} positions a pixel. *Away*: over pixels farther than "
+        "a hundredth of the box's longest side from true silhouettes, before the sky or before the subject itself, "
+        "relative to their mean. Median and worst over views and suns.\n",
     ]
-    for title, part in (("What the faces know", "faces"), ("What a point knows of its shadow", "codes")):
+    for title, part in (("Default and best", "chief"), ("What the faces know", "faces"),
+                        ("What a point knows of its shadow", "codes")):  # fmt: skip
         text += [f"## {title}\n", _errors(parts[part])]
     text += ["## Silhouettes\n", f"The box's longest side is {study.BOX} px long; distances both ways, in pixels.\n",
              _silhouettes(parts["silhouette"]), "## 129 or 513 directions of light\n", _finer(parts["finer"])]
@@ -162,7 +165,7 @@ def _by_directions(lines: Lines, names: Sequence[str], what: str) -> Figure:
     for column, name in enumerate(names):
         axes = figure.add_subplot(1, len(names), column + 1, xscale="log", yscale="log", xlabel="directions of a face",
                                   ylabel=what, title=name if len(names) > 1 else "")  # fmt: skip
-        for colour, selection in zip(COLOURS, study.SELECTIONS):
+        for colour, selection in zip(COLOURS, settings.SELECTIONS):
             for marker, texels in zip(MARKERS, (64, 128, 256)):
                 own = [line for line in lines if (line["selection"], line["texels"]) == (selection, texels)]
                 steps = sorted({line["directions"] for line in own})

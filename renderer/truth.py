@@ -79,7 +79,12 @@ class Truth:
 
 
 def truth_bake(
-    state: SceneState, width: int, height: int, judge: Judge = "combination", cast: Sequence[str] | None = None
+    state: SceneState,
+    width: int,
+    height: int,
+    judge: Judge = "combination",
+    cast: Sequence[str] | None = None,
+    positions: int = POSITIONS,
 ) -> Bake:
     """The computation of a state's reference.
 
@@ -88,6 +93,7 @@ def truth_bake(
         width, height: pixels.
         judge: what it is for.
         cast: kinds of shadow that fall, by the reference's own names; all that the judge has where none are given.
+        positions: within a pixel.
     """
     found = phenomenon(state.scene)
     slots = {slot.name for slot in found.slots} - THE_WORLD.get(state.scene, frozenset())
@@ -98,12 +104,12 @@ def truth_bake(
     arguments = {
         "state": document,
         "size": [width, height],
-        "positions": POSITIONS,
+        "positions": positions,
         "options": options,
         "code": code_of_reference(state.scene),
     }
     once, each = SECONDS[state.scene]
-    return Bake("reference", bake_truth, arguments, inputs, seconds=once + width * height * POSITIONS * each)
+    return Bake("reference", bake_truth, arguments, inputs, seconds=once + width * height * positions * each)
 
 
 @functools.cache

@@ -5,6 +5,7 @@ Apart from `renderer.truth`, which keeps references as it keeps any other precom
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -14,6 +15,9 @@ from renderer.core.technique import Arrays
 
 if TYPE_CHECKING:
     from renderer.truth import Judge, Progress
+
+SKY_RAYS = 576
+"""Rays of a pixel of the directional textures' reference that look for the sky, whatever the number of positions."""
 
 FOREST_SHADOWS = ("terrain", "forest_on_ground", "tree_on_tree", "within_tree")
 """Kinds of shadow that the forest's reference can leave out."""
@@ -136,8 +140,11 @@ def _directional(
     subject = DirectionalWorld(
         **plain, parts=tuple(part_of(each) for each in parts), lamp=None if lamp is None else Lamp(**lamp)
     )
+    strata = max(2, 2 * round(math.sqrt(SKY_RAYS / len(positions)) / 2))
     return _in_two(
-        lambda places, seed, tell: render(subject, looking, places, Options(seed=1 + seed), tell), positions, progress
+        lambda places, seed, tell: render(subject, looking, places, Options(strata, 1 + seed), tell),
+        positions,
+        progress,
     )
 
 

@@ -12,6 +12,9 @@ from renderer.world.image import srgb_encode
 ROW = 2048
 """Points a row of texels: `SURFEL_ROW` in shaders/directional/surfel.glsl."""
 
+WIDEST = 16384
+"""Texels of a row that every OpenGL has: as many points of a code as fit, `CODE_ROW` there."""
+
 
 def surfel_texels(cloud: Arrays, used: np.ndarray, openness: np.ndarray, box: np.ndarray, bits: int) -> np.ndarray:
     """(rows, `ROW`, 4) uint32 as `shaders/directional/surfel.glsl` reads them.
@@ -38,7 +41,7 @@ def surfel_texels(cloud: Arrays, used: np.ndarray, openness: np.ndarray, box: np
 
 
 def code_texels(words: np.ndarray) -> np.ndarray:
-    """(rows, `ROW` * blocks, 4) uint32 of shadow codes (M, W): each point's words in `blocks` texels."""
+    """(rows, points a row * blocks, 4) uint32 of shadow codes (M, W): each point's words in `blocks` texels."""
     blocks = -(-max(words.shape[1], 1) // 4)
     filled = np.zeros((len(words), 4 * blocks), np.uint32)
     filled[:, : words.shape[1]] = words
@@ -46,8 +49,8 @@ def code_texels(words: np.ndarray) -> np.ndarray:
 
 
 def rows_of(texels: np.ndarray, blocks: int) -> np.ndarray:
-    """Texels (M * blocks, 4) in rows of `ROW` points, the last one filled up with zeros."""
-    across = ROW * blocks
+    """Texels (M * blocks, 4) in rows of `ROW` points or as many as fit, the last one filled up with zeros."""
+    across = min(ROW, WIDEST // blocks) * blocks
     rows = -(-max(len(texels), 1) // across)
     padded = np.zeros((rows * across, 4), np.uint32)
     padded[: len(texels)] = texels

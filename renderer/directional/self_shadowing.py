@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Hashable, Mapping
 from typing import TYPE_CHECKING, Any, ClassVar
 
+from renderer.core.errors import LimitError
 from renderer.core.technique import Arrays, Bake
 from renderer.directional.bakes import shadows_bake
 from renderer.directional.codes.baking import bake_code
@@ -23,9 +24,18 @@ class SelfShadowTechnique(DirectionalTechnique):
 
     extra_declarations: ClassVar[tuple[str, ...]] = LAYOUT_DECLARATIONS
     includes: ClassVar[tuple[str, ...]] = ("directional/shadow_code.glsl",)
+    most_directions: ClassVar[int] = 513
+    """Of a hemisphere that its code can hold."""
 
     def bakes(self, state: Any) -> list[Bake]:
-        """The words of all points."""
+        """The words of all points.
+
+        Raises:
+            LimitError: finer hemispheres than its code can hold.
+        """
+        if state.hemispheres.directions > self.most_directions:
+            raise LimitError("hemispheres.directions", f"are {state.hemispheres.directions:,}, too many for the code",
+                             f"at most {self.most_directions} with {self.title.lower()}")  # fmt: skip
         shadows = shadows_bake(state)
         given = self.model_dump(include={"kind", "size"})
         arguments = {**given, "directions": state.hemispheres.directions}

@@ -29,10 +29,10 @@ def _slot(name: str, title: str, help_text: str) -> Any:
 class Hemispheres(Model):
     """How finely each point knows what hides the light from it."""
 
-    directions: Literal[33, 129, 513] = param(
+    directions: Literal[33, 129, 513, 2049] = param(
         129,
         label="Directions",
-        help="Of light, that a point's hemisphere holds.",
+        help="Of light, that a point's hemisphere holds; the last for bits alone.",
         unit="count",
         cost="bake",
         source="Porquet 2005",

@@ -6,7 +6,8 @@
 // Deviation: the thesis keeps 15 bytes, of which 3 for a position of 1 byte an axis; here 16 bytes and the code beside.
 
 const uint NO_POINT = 0xFFFFFFFFu;
-const int SURFEL_ROW = 2048; // points a row of texels: eight of a code are 16384, which every OpenGL has
+const int SURFEL_ROW = 2048; // points a row of texels
+const int CODE_ROW = min(SURFEL_ROW, 16384 / max(SHADOW_BLOCKS, 1)); // of codes: no wider than every OpenGL has
 
 struct Surfel {
     uint index;
@@ -51,5 +52,5 @@ Surfel surfel_of(uint point) {
 // Four words of a point's shadow code.
 uvec4 shadow_words(uint point, int block) {
     int number = int(point);
-    return texelFetch(shadow_code, ivec2((number % SURFEL_ROW) * SHADOW_BLOCKS + block, number / SURFEL_ROW), 0);
+    return texelFetch(shadow_code, ivec2((number % CODE_ROW) * SHADOW_BLOCKS + block, number / CODE_ROW), 0);
 }

@@ -17,10 +17,12 @@ class Bits:
     Args:
         layout: of the masks.
         blend: whether what lies between directions is blended of the four around it, rather than the nearest one's.
+        sharpness: slope of what is shown of a blend, about its middle (Green 2007); 1 leaves it as it is.
     """
 
     layout: Hemisphere
     blend: bool = True
+    sharpness: float = 1.0
 
     @property
     def size(self) -> int:
@@ -37,7 +39,8 @@ class Bits:
         """As `Code`."""
         octets = np.ascontiguousarray(words).view(np.uint8)
         masks = np.unpackbits(octets, axis=1, count=self.layout.count, bitorder="little")
-        return read_masks(self.layout, masks, places, self.blend)
+        found = read_masks(self.layout, masks, places, self.blend)
+        return np.clip(0.5 + self.sharpness * (found - 0.5), 0, 1) if self.blend else found
 
 
 def read_masks(layout: Hemisphere, masks: np.ndarray, places: np.ndarray, blend: bool) -> np.ndarray:
