@@ -45,9 +45,9 @@ def faces(given: argparse.Namespace) -> int:
     folder = Path(load().study) / scene / "faces"
     tell = Teller(scene)
     with Session() as session:
-        preset = presets_of(given.presets or "1", session.describe(scene)["presets"])[0]
+        presets = presets_of(given.presets or "1", session.describe(scene)["presets"])
         try:
-            print(report.run(session, preset, folder, given.views, suns, parts, tell))
+            print(report.run(session, presets, folder, given.views, suns, parts, tell))
         finally:
             tell.bar.close()
     if given.docs:

@@ -128,10 +128,12 @@ def test_a_study_goes_on_where_it_was_and_leaves_its_table(
     assert all(0 < line["away"] < 3 and 0 < line["share"] < 0.5 for line in lines)
     monkeypatch.setattr(stage, "_picture", lambda *given: pytest.fail("drawn again"))
     assert stage.swept("chief", (SMALL,), lambda share, words: None) == lines[:2]
-    text = report.write(tmp_path, lines)
+    text = report.write(tmp_path, [*lines, *({**line, "preset": "land", "away": 0.125} for line in lines[:1])])
     assert all((tmp_path / name).stat().st_size > 0 for name in report.FILES)
-    row = next(line for line in text.splitlines() if line.startswith("| 16 | 33 | position_corrected | bits |"))
-    cells = [cell.strip() for cell in row.strip("|").split("|")]
+    rows = [line for line in text.splitlines() if line.startswith("| 16 | 33 | position_corrected | bits |")]
+    assert len(rows) == 2, "one of each preset"
+    cells, other = ([cell.strip() for cell in row.strip("|").split("|")] for row in rows)  # the knot, and the land
+    assert (other[5], other[-1]) == ("0.125", "1")
     own = [line["away"] for line in lines[:2]]
     assert cells[5:7] == [f"{np.median(own):.3f}", f"{max(own):.3f}"]
     assert cells[-1] == "2"

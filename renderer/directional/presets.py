@@ -57,6 +57,7 @@ PRESETS = {
         {
             "subject": {"kind": "teapot"},
             "visibility": {"directions": 129},
+            "hemispheres": {"directions": 129},
             "selection": {"kind": "nearest"},
             "light": {"kind": "measured_brdf"},
             "material": {"kind": "satin"},

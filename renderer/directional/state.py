@@ -30,7 +30,7 @@ class Hemispheres(Model):
     """How finely each point knows what hides the light from it."""
 
     directions: Literal[33, 129, 513, 2049] = param(
-        129,
+        513,
         label="Directions",
         help="Of light, that a point's hemisphere holds; the last for bits alone.",
         unit="count",

@@ -89,7 +89,7 @@ BOX = np.array([[-0.5, -0.7, -0.9], [0.5, 0.7, 0.9]])
 
 def _on_faces(thread: GLThread, body: str, inputs: dict[str, np.ndarray], outputs: int) -> np.ndarray:
     names = "uniform vec3 box_low; uniform vec3 box_high; uniform usampler2D surfels; uniform usampler2D shadow_code;"
-    names += " uniform usampler2DArray seen; uniform isampler2D seen_layer;"
+    names += " uniform usampler2DArray seen; uniform usampler2DArray seen_depth; uniform isampler2D seen_layer;"
     return _evaluated(
         thread,
         FACES,
