@@ -14,6 +14,7 @@ from server import (
     cli_draw,
     cli_far,
     cli_headline,
+    cli_keyframes,
     cli_leaves,
     cli_measure,
     cli_orders,
@@ -42,6 +43,7 @@ def parser(arguments: Sequence[str]) -> argparse.ArgumentParser:
     cli_headline.add(commands)
     cli_measure.add(commands, "measure" in arguments)
     cli_orders.add(commands)
+    cli_keyframes.add(commands)
     cli_sunlight.add(commands, "sunstudy" in arguments)
     cli_study.add(commands)
     cli_stability.add(commands)

@@ -10,6 +10,8 @@ import numpy as np
 from renderer.core.technique import Arrays
 from renderer.shells.animation import motion_of
 from renderer.shells.animation_scene import moment
+from renderer.shells.things import met as things_met
+from renderer.shells.things import placed_things
 from renderer.world.camera import rays
 
 if TYPE_CHECKING:
@@ -26,7 +28,8 @@ def probe(
 
     Returns:
         `position` [m] where the ray comes in, `texture`, its coordinates there, `tetrahedra`, how many the ray crosses,
-        and `length` inside of them [m]; or `sky` where it meets none.
+        and `length` inside of them [m]; `thing`, the kind and number of what it meets instead; or `sky` where it meets
+        nothing.
     """
     width, height = size
     column, row = min(int(x * width), width - 1), min(int(y * height), height - 1)
@@ -36,6 +39,10 @@ def probe(
     shell = moment(arrays["surface"], arrays["shell"], state.extrusion, motion, state.time).shell
     near, far = crossings(shell["planes"], origin, ray)
     met = np.flatnonzero(far > near)
+    away, number = _thing(state, arrays, origin, ray)
+    if away < np.min(near[met], initial=np.inf):
+        place = [round(float(value), 4) for value in origin + away * ray]
+        return {"position": place, "thing": f"{number + 1}. {state.things.list[number].kind}"}
     if not len(met):
         return {"sky": True}
     first = met[np.argmin(near[met])]
@@ -47,6 +54,15 @@ def probe(
         "tetrahedra": len(met),
         "length": round(float((far - near)[met].sum()), 4),
     }
+
+
+def _thing(
+    state: ShellsState, arrays: Mapping[str, Arrays], origin: np.ndarray, ray: np.ndarray
+) -> tuple[float, int]:
+    """Distance [m] and number of the first other mesh that a ray meets."""
+    if "things" not in arrays:
+        return np.inf, -1
+    return things_met(placed_things(state.things, arrays["things"]), origin, ray)
 
 
 def crossings(planes: np.ndarray, origin: np.ndarray, ray: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

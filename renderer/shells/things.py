@@ -215,6 +215,26 @@ def _of_file(number: int, arguments: dict[str, Any]) -> Shape:
     return shape_of((mesh.vertices - foot) / float((high - low).max()), mesh.faces, mesh.face_colour)
 
 
+def met(placed: PlacedThings, origin: np.ndarray, ray: np.ndarray) -> tuple[float, int]:
+    """Distance [m] at which a ray first meets a thing, and the thing's number; infinity and -1 where it meets none.
+
+    Source: Möller and Trumbore 1997, "Fast, minimum storage ray/triangle intersection".
+    """
+    a, b, c = (placed.corners[:, k] for k in range(3))
+    along, across = b - a, c - a
+    normal = np.cross(ray, across)
+    size = (along * normal).sum(axis=1)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        u = ((origin - a) * normal).sum(axis=1) / size
+        turned = np.cross(origin - a, along)
+        v, t = (turned @ ray) / size, (turned * across).sum(axis=1) / size
+        inside = (u >= 0) & (v >= 0) & (u + v <= 1) & (t > 0)
+    if not inside.any():
+        return math.inf, -1
+    first = int(np.argmin(np.where(inside, t, np.inf)))
+    return float(t[first]), int(placed.owner[first])
+
+
 def sphere_round(corners: np.ndarray) -> tuple[np.ndarray, float]:
     """Middle (3,) and radius [m] of a sphere that holds places (..., 3)."""
     places = corners.reshape(-1, 3)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -13,7 +14,8 @@ from renderer.core.cache import AssetStore, Cache
 from renderer.core.errors import InputError, InvalidDocument
 from renderer.core.params import validate
 from renderer.core.technique import Arrays
-from renderer.shells.bakes import sky_bake
+from renderer.shells.bakes import bakes, sky_bake
+from renderer.shells.probe import probe
 from renderer.shells.program import compose_source, walk_source
 from renderer.shells.state import ShellsState
 from renderer.shells.thing_shapes import SHAPES
@@ -99,11 +101,11 @@ def test_things_hide_and_shade_as_the_reference_has_it(draw: Draw, right: np.nda
 def test_all_orders_end_their_rays_at_things(draw: Draw) -> None:
     """The thing that reaches into the shell cuts cells in two: each order draws the near part of them."""
     patch = {**GLOBE, **LIT, "things": {"list": AROUND}, "sampling": FINE}
-    walked = draw(patch, blobs(), size=24)
+    walked = draw(patch, blobs(), size=16)
     for order in ("depth_peeling", "sxmpvo", "k_buffer", "fragment_lists"):
-        assert apart(draw({**patch, "order": {"kind": order}}, blobs(), size=24), walked) < 1e-3, order
-    assert apart(draw({**patch, "order": {"kind": "moments"}}, blobs(), size=24), walked) < 0.05, "its own error"
-    assert apart(draw({**patch, "things": {"list": AROUND[:1]}}, blobs(), size=24), walked) > 0.1
+        assert apart(draw({**patch, "order": {"kind": order}}, blobs(), size=16), walked) < 1e-3, order
+    assert apart(draw({**patch, "order": {"kind": "moments"}}, blobs(), size=16), walked) < 0.05, "its own error"
+    assert apart(draw({**patch, "things": {"list": AROUND[:1]}}, blobs(), size=16), walked) > 0.1
 
 
 def test_things_shine_by_themselves_where_matter_does(draw: Draw) -> None:
@@ -141,3 +143,23 @@ def test_a_value_out_of_range_is_refused_where_the_document_has_it() -> None:
     document = {"scene": "shells", "things": {"list": [{"kind": "ball"}, {"kind": "box", "width": 5000}]}}
     with pytest.raises(InvalidDocument, match=r"^things\.list\.1\.width: .*at least 0\.001, at most 1000 m"):
         validate(ShellsState, document)
+
+
+def test_a_point_of_the_picture_tells_which_thing_lies_there() -> None:
+    """The ball before the shell, the shell before the ground, the ground beside both, and nothing above."""
+    camera = {"kind": "orthographic", "centre": [0, 0, 0], "direction": [0, 1, 0], "up": [0, 0, 1], "width": 4}
+    ball = {"kind": "ball", "position": [-1, -2, -0.3], "radius": 0.3}
+    ground = {"kind": "ground", "position": [0, 0, -1], "size": 3}
+    document = {"scene": "shells", "camera": camera, "things": {"list": [ground, ball]}}
+    state = validate(ShellsState, {**document, "surface": {"kind": "sphere", "radius": 0.6, "divisions": 4}})
+    arrays = {bake.name: bake_now(bake, Cache()) for bake in bakes(state)}
+
+    def at(x: float, z: float) -> dict[str, Any]:
+        return probe(state, arrays, 0.5 + x / 4, 0.5 - z / 4, (64, 64))
+
+    assert at(-1, 0)["thing"] == "2. ball"
+    assert at(-1, 0)["position"][1] == pytest.approx(-2.3, abs=0.01)
+    assert "tetrahedra" in at(0, 0)
+    assert at(1, 1.5) == {"sky": True}
+    lower = validate(ShellsState, {**state.model_dump(), "camera": {**camera, "direction": [0, 0.6, -0.8]}})
+    assert probe(lower, arrays, 0.75, 0.5, (64, 64))["thing"] == "1. ground"
