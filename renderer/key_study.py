@@ -195,11 +195,10 @@ def table(found: Mapping[str, Any]) -> str:
         rows = [head, ["---:"] * len(head)]
         for line in (line for line in found["lines"] if line["surface"] == name):
             interpolated, computed = line["microseconds"]
-            rows.append([
-                str(line["keys"]), f"{line['texture']:.3g}", f"{100 * line['astray']:.3g}",
-                f"{1e3 * line['plane']:.3g}", f"{1e3 * line['place']:.3g}", f"{100 * line['picture']:.3g}", f"{line['mebibytes']:.3g}",
-                f"{interpolated:.0f}", f"{computed:.0f}",
-            ])  # fmt: skip
+            shares = (line["texture"], 100 * line["astray"], 1e3 * line["plane"], 1e3 * line["place"],
+                      100 * line["picture"], line["mebibytes"])  # fmt: skip
+            times = (f"{interpolated:.0f}", f"{computed:.0f}")
+            rows.append([str(line["keys"]), *(f"{value:.3g}" for value in shares), *times])
         text += f"\n`{name}`, {cells:,} tetrahedra\n\n" + "".join("| " + " | ".join(row) + " |\n" for row in rows)
     return text
 
