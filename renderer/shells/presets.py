@@ -28,6 +28,8 @@ _HOLLOW = {"opaque": False}
 
 _MOVING = "Moving"
 
+_BESIDE = "Beside other meshes"
+
 PRESETS = {
     "fur": Preset(
         "Fur",
@@ -83,6 +85,7 @@ PRESETS = {
                 ]
             },
         },
+        _BESIDE,
     ),
     "fur_pedestal": Preset(
         "Fur on a pedestal",
@@ -100,6 +103,7 @@ PRESETS = {
                 ]
             },
         },
+        _BESIDE,
     ),
     "vase_trees": Preset(
         "Vase, trees",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import OrderedDict
 from collections.abc import Hashable, Mapping
 from typing import TYPE_CHECKING, Any
 
@@ -23,6 +24,9 @@ from renderer.world.projection import view_projection
 if TYPE_CHECKING:
     from renderer.shells.frame import Frame
     from renderer.shells.state import ShellsState
+
+MESHES_KEPT = 2
+"""Sets of things that stay on the GPU: those of two pictures side by side."""
 
 READ = ("3f 3f 3f 3f", "position", "smoothed", "facing", "albedo")
 
@@ -136,25 +140,27 @@ class ThingMesh:
 
 
 class ThingMeshes:
-    """The things that were drawn last."""
+    """The things that were drawn last, the longest unasked given back first."""
 
     def __init__(self, gl: GL) -> None:
         self._gl = gl
-        self._held: tuple[Hashable, ThingMesh] | None = None
+        self._held: OrderedDict[Hashable, ThingMesh] = OrderedDict()
 
     def find(self, baked: BakedArrays, things: Things, place: Placed) -> ThingMesh:
         """Things of a document beside a shell."""
-        key = (baked.key, things.list, tuple(float(part) for part in place.centre), place.radius)
-        if self._held is None or self._held[0] != key:
-            self.release()
-            self._held = key, ThingMesh(self._gl, things, placed_things(things, baked.arrays), place)
-        return self._held[1]
+        alone = all(isinstance(thing, Ground) for thing in things.list)  # the shell is what their map is as wide as
+        key = (baked.key, things.list, tuple(float(part) for part in place.centre), place.radius if alone else None)
+        if key not in self._held:
+            self._held[key] = ThingMesh(self._gl, things, placed_things(things, baked.arrays), place)
+            while len(self._held) > MESHES_KEPT:
+                self._held.popitem(last=False)[1].release()
+        self._held.move_to_end(key)
+        return self._held[key]
 
     def release(self) -> None:
         """Free them."""
-        if self._held is not None:
-            self._held[1].release()
-            self._held = None
+        while self._held:
+            self._held.popitem()[1].release()
 
 
 def things_source(state: ShellsState) -> Source:
