@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from renderer.forest.program import look_source, shade_source, smooth_source
+from renderer.forest.program import look_source, shade_source, smooth_source, spread_source
 from renderer.gl.context import GL
 from renderer.gl.layers import Layers
 from renderer.gl.program import AnyTexture
@@ -29,25 +29,27 @@ class FirstLook:
 
     def __init__(self, gl: GL) -> None:
         self._gl = gl
-        self._kept: dict[tuple[tuple[int, int], int], tuple[Layers, Layers]] = {}
+        self._kept: dict[tuple[tuple[int, int], int], tuple[Layers, ...]] = {}
 
     def prepare(
         self,
         state: ForestState,
-        side: int,
+        look: tuple[int, int],
         size: tuple[int, int],
         textures: Mapping[str, AnyTexture],
         values: Mapping[str, Any],
-    ) -> tuple[Source, dict[str, AnyTexture], dict[str, Any]]:
-        """Look for the sun and light a sample; what lays it into the bound framebuffer.
+    ) -> tuple[Source, dict[str, AnyTexture]]:
+        """Look for the sun and light a sample; what lays it into the bound framebuffer, with the values of its pixels.
 
         Args:
             state: of the first sample.
-            side: pixels of a block's side that share a look at the sun; 1: the shadow technique answers at each pixel.
-            size: (width, height) in pixels.
+            look: pixels of a block's side that share a look at the sun, 1 where the shadow technique answers at each;
+                and how many share a ray.
+            size: (width, height) of the rays that were traced.
             textures, values: of the frame, with what was traced.
         """
-        looked, lit = self._targets(size, side)
+        side, pitch = look
+        looked, lit, smooth = self._targets(size, side)
         found = dict(textures)
         if side > 1:
             looked.use()
@@ -55,7 +57,12 @@ class FirstLook:
             found["looked"] = looked.textures[0]
         lit.use()
         run_fullscreen(self._gl, shade_source(state, side), found, values)
-        return smooth_source(state, side), {**textures, "lit": lit.textures[0]}, dict(values)
+        held = {**textures, "lit": lit.textures[0]}
+        if pitch == 1:
+            return smooth_source(state, side), held
+        smooth.use()
+        run_fullscreen(self._gl, smooth_source(state, side, pitch), held, values)
+        return spread_source(state, side), {**textures, "smooth_lit": smooth.textures[0]}
 
     def release(self) -> None:
         """Free every target."""
@@ -63,13 +70,14 @@ class FirstLook:
             for layers in self._kept.popitem()[1]:
                 layers.release()
 
-    def _targets(self, size: tuple[int, int], side: int) -> tuple[Layers, Layers]:
+    def _targets(self, size: tuple[int, int], side: int) -> tuple[Layers, ...]:
+        """What was looked for, lit and smoothed."""
         key = (size, side)
         if key not in self._kept:
             while len(self._kept) >= SIZES_KEPT:
                 for layers in self._kept.pop(next(iter(self._kept))):
                     layers.release()
             blocks = (-(-size[0] // side), -(-size[1] // side))
-            self._kept[key] = (Layers(self._gl, *blocks, ((4, "f4"),)), Layers(self._gl, *size, ((4, "f4"),)))
+            self._kept[key] = tuple(Layers(self._gl, *each, ((4, "f4"),)) for each in (blocks, size, size))
         self._kept[key] = self._kept.pop(key)
         return self._kept[key]

@@ -60,16 +60,23 @@ uniform float pixel_angle;        // rad, width of a pixel in perspective
 uniform float pixel_width;        // m, width of a pixel in a parallel view
 uniform vec2 picture_size;
 uniform vec2 pixel_offset;        // of the sample within its pixel, from the top-left corner
+uniform float ray_pitch;          // pixels a side that share a ray
 uniform float sample_shift;       // number of the sample, which turns the jitter"""
 
 LOOK_DECLARATIONS = """uniform sampler2D looked; // of each block: share of the sun at one of its pixels, and where
-uniform sampler2D lit;    // what was lit so, and its distance in m"""
+uniform sampler2D lit;    // what was lit so, and its distance in m
+uniform sampler2D smooth_lit; // the same smoothed, and its opacity"""
 
 RAY_OF_PIXEL = """// From sample to sample the low-discrepancy sequence R4 of Roberts 2018; from pixel to pixel
 // the interleaved gradient noise of Jimenez 2014, "Next Generation Post Processing in Call of Duty".
 const vec4 JITTER_TURNS = vec4(0.8566748838545029, 0.7338918566271260, 0.6287067210378087, 0.5385972572236101);
+// Top-left corner of a fragment's pixel; where ray_pitch by ray_pitch pixels share a ray, of one in their middle.
+vec2 ray_corner(vec2 fragment) {
+    return (picture_pixel(fragment, picture_size) - 0.5) * ray_pitch + 0.5 * (ray_pitch - 1.0);
+}
+
 vec4 pixel_ray(out vec2 corner, out vec3 origin, out vec3 direction) {
-    corner = picture_pixel(gl_FragCoord.xy, picture_size) - 0.5;
+    corner = ray_corner(gl_FragCoord.xy);
     camera_ray(corner + pixel_offset, origin, direction);
     float noise = fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715))));
     return fract(noise * vec4(1.0, 7.0, 13.0, 29.0) + vec4(0.0, 0.5, 0.25, 0.75) + sample_shift * JITTER_TURNS);
@@ -115,7 +122,7 @@ void main() {
     float number;
     ivec2 pixel = looking_pixel(ivec2(gl_FragCoord.xy), found, number);
     vec3 origin, direction;
-    camera_ray(picture_pixel(vec2(pixel) + 0.5, picture_size) - 0.5 + pixel_offset, origin, direction);
+    camera_ray(ray_corner(vec2(pixel) + 0.5) + pixel_offset, origin, direction);
     vec3 place = origin + (found.y == NOTHING ? 0.0 : found.x) * direction;
     float h = max(found.y >= WOOD ? found.y - WOOD : found.y, 0.0);
     look = vec4(shadow_visibility(place, h, atlas_coordinate(place.xy)), found, number);
@@ -129,7 +136,16 @@ void main() {
     vec4 seen = smoothed(ivec2(gl_FragCoord.xy));
     float faded = seen.a < 0.0 ? 0.0 : 1.0 - land_kept((origin + seen.a * direction).xy);
     float opacity = texelFetch(traced_voxel, ivec2(gl_FragCoord.xy), 0).w - faded;
-    radiance = before_sky(seen.rgb, opacity, direction);
+    radiance = %s;
+}"""
+
+SPREAD_BODY = """layout(location = 0) out vec4 radiance;
+void main() {
+    vec2 corner;
+    vec3 origin, direction;
+    pixel_ray(corner, origin, direction);
+    vec4 seen = spread_out(picture_pixel(gl_FragCoord.xy, picture_size));
+    radiance = before_sky(seen.rgb, seen.a, direction);
 }"""
 
 TRACE_SLOTS = ("geometry", "filter")
@@ -177,9 +193,16 @@ def look_source(state: ForestState, look: int) -> Source:
     return _shading(state, ("shadow", "filter"), (), ("forest/first_look.glsl",), LOOK_BODY, look)
 
 
-def smooth_source(state: ForestState, look: int) -> Source:
-    """The fragment stage that smooths what was lit so, and lays it before the sky."""
-    return _shading(state, ("filter",), (), ("forest/fading.glsl", "forest/first_look.glsl"), SMOOTH_BODY, look)
+def smooth_source(state: ForestState, look: int, pitch: int = 1) -> Source:
+    """The fragment stage that smooths what was lit so; it lays it before the sky unless `spread_source` has to bring
+    it to more pixels, `pitch` a side of each."""
+    body = SMOOTH_BODY % ("before_sky(seen.rgb, opacity, direction)" if pitch == 1 else "vec4(seen.rgb, opacity)")
+    return _shading(state, ("filter",), (), ("forest/fading.glsl", "forest/first_look.glsl"), body, look)
+
+
+def spread_source(state: ForestState, look: int) -> Source:
+    """The fragment stage that lays what was smoothed, of fewer rays than pixels, before the sky."""
+    return _shading(state, ("filter",), (), ("forest/fading.glsl", "forest/first_look.glsl"), SPREAD_BODY, look)
 
 
 def _shading(

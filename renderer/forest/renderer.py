@@ -6,10 +6,9 @@ import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from renderer.core.params import uniforms
 from renderer.core.technique import BakedArrays
+from renderer.forest.bounds import bounds, stretch
 from renderer.forest.first_look import FirstLook
 from renderer.forest.pattern import tallest
 from renderer.forest.program import SCOUT_BLOCKS, TRACE_SLOTS, pass_source, scout_source, shade_source, trace_source
@@ -73,22 +72,24 @@ class ForestRenderer:
             offset: of the sample inside its pixel, from the top-left corner.
             sample: its number, which turns the jitter.
         """
-        look = 0 if sample else state.shadow.first_look()
+        look = (0, 1) if sample else (state.shadow.first_look(), state.geometry.first_pitch())
         state = state if sample else state.first_sample()
         values = self._world(state, baked)
         textures: dict[str, AnyTexture] = self._world_textures(state, baked)
         for slot, technique in state.techniques().items():
             values |= uniforms(technique, slot) | technique.constants()
         values |= camera_uniforms(state.camera, *size) | self._pixel(state, size)
-        values |= {"picture_size": size, "pixel_offset": offset, "sample_shift": float(sample)}
+        values |= {"picture_size": size, "pixel_offset": offset, "sample_shift": float(sample), "ray_pitch": 1.0}
         textures["scout"] = self._scout(state, baked, size, values, textures)
-        traced = self._traced(state, baked, (size, offset, sample), values, textures)
-        values |= self._shadow_pass(state, baked, size, values, textures)
+        rays = (-(-size[0] // look[1]), -(-size[1] // look[1]))
+        thrown = values | {"picture_size": rays, "ray_pitch": float(look[1])}
+        traced = self._traced(state, baked, (rays, look[1], offset, sample), thrown, textures)
+        thrown |= self._shadow_pass(state, baked, size, values, textures)
         self._technique_textures(state, baked, textures)
         held = {**textures, **self._sky(state, baked), **traced}
-        if look:
-            return self._first.prepare(state, look, size, held, values)
-        return shade_source(state), held, values
+        if look != (0, 1):
+            return *self._first.prepare(state, (max(look[0], 1), look[1]), rays, held, thrown), values
+        return shade_source(state), held, thrown
 
     def draw(self, prepared: Prepared) -> None:
         """Light a prepared sample: linear premultiplied radiance into the bound framebuffer."""
@@ -239,7 +240,7 @@ class ForestRenderer:
         self,
         state: ForestState,
         baked: Baked,
-        sample: tuple[tuple[int, int], tuple[float, float], int],
+        sample: tuple[tuple[int, int], int, tuple[float, float], int],
         values: dict[str, Any],
         textures: dict[str, AnyTexture],
     ) -> dict[str, AnyTexture]:
@@ -276,25 +277,3 @@ class ForestRenderer:
         if isinstance(state.camera, Orthographic):
             return {"pixel_angle": 0.0, "pixel_width": state.camera.width / size[0]}
         return {"pixel_angle": 2 * math.tan(math.radians(state.camera.field_of_view) / 2) / size[1], "pixel_width": 0.0}
-
-
-def bounds(elevation: np.ndarray, tree: float) -> dict[str, float]:
-    """What no ray need look beyond: the steepest rise over run of the ground, and the tops of trees and scene [m]."""
-    east = np.abs(np.diff(elevation, axis=1)) / CELL
-    north = np.abs(np.diff(elevation, axis=0)) / CELL
-    steepest = np.hypot(np.maximum(east[:-1], east[1:]), np.maximum(north[:, :-1], north[:, 1:])).max()
-    # The slope along a line jumps where two cells meet, and changes steadily inside a twisted one.
-    jumps = [np.abs(np.diff(elevation, n=2, axis=axis)).max() / CELL**2 for axis in (0, 1)]
-    twist = np.abs(np.diff(np.diff(elevation, axis=0), axis=1)).max() / CELL**2
-    return {
-        "terrain_steepness": float(steepest),
-        "terrain_bend": float(sum(jumps) + 2 * twist),
-        "canopy_top": tree,
-        "scene_top": float(elevation.max()) + tree,
-    }
-
-
-def stretch(growth: np.ndarray) -> dict[str, float]:
-    """How low the canopy's layer gets against the pattern's, and its greatest rise over run."""
-    steps = [np.abs(np.diff(growth, axis=axis)).max() * CANOPY_HEIGHT / CELL for axis in (0, 1)]
-    return {"canopy_least": float(growth.min()), "canopy_grade": float(np.hypot(*steps))}

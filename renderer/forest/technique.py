@@ -62,6 +62,11 @@ class ForestTechnique(Technique):
         where its `first_sample` answers at each pixel, and 0 where nothing is smoothed."""
         return 0
 
+    def first_pitch(self) -> int:
+        """Pixels a side that share a ray of the eye in a picture's first sample, which is smoothed where that is not
+        1."""
+        return 1
+
     def first_sample(self) -> ForestTechnique:
         """What stands for it in a picture's first sample, the one that is shown while something moves."""
         return self

@@ -67,4 +67,20 @@ vec4 smoothed(ivec2 pixel) {
     }
     return vec4(own.a < 0.0 ? vec3(0.0) : sum.rgb / sum.a, own.a);
 }
+
+// What was smoothed of one ray for two by two pixels, linear between the rays: row 0 of `smooth_lit` is its lowest, where the
+// blocks of pixels are counted from the top.
+vec4 spread_out(vec2 pixel) {
+    ivec2 size = textureSize(smooth_lit, 0);
+    vec2 place = vec2(0.5 * pixel.x, float(size.y) - 0.5 * pixel.y) - 0.5;
+    vec2 part = fract(place);
+    ivec2 low = ivec2(floor(place));
+    vec4 row[2];
+    for (int n = 0; n < 2; n++) {
+        ivec2 at = clamp(low + ivec2(0, n), ivec2(0), size - 1);
+        ivec2 beside = clamp(low + ivec2(1, n), ivec2(0), size - 1);
+        row[n] = mix(texelFetch(smooth_lit, at, 0), texelFetch(smooth_lit, beside, 0), part.x);
+    }
+    return mix(row[0], row[1], part.y);
+}
 #endif

@@ -11,15 +11,16 @@ import pytest
 from renderer import view
 from renderer.gl.thread import GLThread
 from tests.forest import worlds
-from tests.forest.truth import SCENE, SIDE, grove
+from tests.forest.truth import SCENE, SIDE, SKY, grove
 
 Spoil = Callable[..., Any]
 
 
 def drawn(thread: GLThread, painter: view.Painter, samples: int, blocks: int, patch: dict[str, Any] | None = None,
-          size: tuple[int, int] = (SIDE, SIDE), longer: float = 1.0) -> np.ndarray:
-    """The grove with a traced shadow, (H, W, 4) float64; steps of the first sample so much `longer`."""
-    geometry = worlds.technique("geometry", "ray_march", step=1.0, stop=0.02, first=longer)
+          size: tuple[int, int] = (SIDE, SIDE), longer: float = 1.0, pitch: int = 1) -> np.ndarray:
+    """The grove with a traced shadow, (H, W, 4) float64; steps of the first sample so much `longer`, and `pitch` by
+    `pitch` of its pixels with one ray."""
+    geometry = worlds.technique("geometry", "ray_march", step=1.0, stop=0.02, first=longer, pitch=pitch)
     march = worlds.technique("shadow", "sun_march", step=1.0, growth=0.0, bias=-1.5, stop=0.02, blocks=blocks)
     made = worlds.state(**{**SCENE, **worlds.PLAIN, "shadow": march, "geometry": geometry, **(patch or {})})
     return view.paint(thread, painter, made, grove(made), size, samples).linear.astype(np.float64)
@@ -47,7 +48,7 @@ def test_the_first_sample_is_quieter_than_a_plain_one(
 
 def test_it_fades_from_the_picture(thread: GLThread, painter: view.Painter, settled: np.ndarray) -> None:
     for blocks in (0, 3):
-        apart = off(drawn(thread, painter, 256, blocks), drawn(thread, painter, 256, 1))
+        apart = off(drawn(thread, painter, 256, blocks), settled)
         assert apart < off(drawn(thread, painter, 1, blocks), settled) / 128
 
 
@@ -78,6 +79,47 @@ def test_longer_steps_of_the_first_sample_are_lost_in_its_noise(
     assert off(far_longer, settled) > off(longer, settled)
     second = [2 * drawn(thread, painter, 2, 3, longer=times) - first for times, first in ((1.0, even), (2.0, longer))]
     np.testing.assert_allclose(*second, atol=1e-5)
+
+
+def spread_error(thread: GLThread, painter: view.Painter, size: tuple[int, int]) -> float:
+    """Worst relative error of a ray for four pixels against a ray for each, over bare hills without any detail, whose
+    light is all but linear; the rim apart, which has no neighbours to be linear between."""
+    north, east = np.mgrid[2044.0:-2045.0:-8.0, -2044.0:2045.0:8.0]
+    baked = worlds.together(
+        sky=worlds.sky(SKY), terrain=worlds.ground(1e-3 * east**2 + 2e-3 * north**2, 0.0), pattern=worlds.uniform(0)
+    )
+    shown = []
+    for pitch in (1, 2):
+        given = {**worlds.PLAIN, "geometry": worlds.technique("geometry", "ray_march", pitch=pitch)}
+        made = worlds.state(camera=worlds.map_view(90, 60, 64), sun=worlds.sun(123, 30), **given)
+        shown.append(view.paint(thread, painter, made, baked, size, 1).linear[3:-3, 3:-3].astype(np.float64))
+    return float(np.abs(shown[1] / shown[0] - 1).max())
+
+
+@pytest.mark.parametrize("size", [(64, 48), (51, 37)])
+def test_a_ray_for_four_pixels_stands_in_their_middle(
+    thread: GLThread, painter: view.Painter, spoil: Spoil, size: tuple[int, int]
+) -> None:
+    # Normals are linear between nodes eight metres apart, so that their light bends there.
+    assert spread_error(thread, painter, size) < 0.004
+    with spoil("forest/first_look.glsl", "float(size.y) - 0.5 * pixel.y", "0.5 * pixel.y"):
+        assert spread_error(thread, painter, size) > 0.02
+
+
+def test_a_ray_for_four_pixels_is_smoothed_into_a_nearer_picture_than_a_plain_one(
+    thread: GLThread, painter: view.Painter, settled: np.ndarray
+) -> None:
+    plain, four = drawn(thread, painter, 1, 1), drawn(thread, painter, 1, 0, longer=2.5, pitch=2)
+    assert off(four, settled) < off(plain, settled)
+    assert four[..., :3].mean() == pytest.approx(settled[..., :3].mean(), rel=0.1)
+    odd = drawn(thread, painter, 1, 0, size=(51, 37), pitch=2)
+    assert odd.shape == (37, 51, 4)
+    assert odd[[0, -1], :, :3].min() > 0
+    assert odd[:, [0, -1], :3].min() > 0
+    one, other = (
+        2 * drawn(thread, painter, 2, 0, pitch=pitch) - drawn(thread, painter, 1, 0, pitch=pitch) for pitch in (1, 2)
+    )
+    np.testing.assert_allclose(one, other, atol=1e-5)
 
 
 def test_opacity_is_each_pixels_own(thread: GLThread, painter: view.Painter) -> None:

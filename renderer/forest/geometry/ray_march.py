@@ -42,6 +42,20 @@ class RayMarch(ForestTechnique):
         step=0.25,
     )
 
+    pitch: int = param(
+        1,
+        label="Rays of the first sample",
+        help="Pixels a side that share a ray in a picture's first sample, which is smoothed; 1: each has its own.",
+        unit="px",
+        cost="host",
+        ge=1,
+        le=2,
+    )
+
+    def first_pitch(self) -> int:
+        """As chosen."""
+        return self.pitch
+
     def first_sample(self) -> RayMarch:
         """Longer steps, and less to see behind what hides the most: the noise of one sample is far greater."""
         if self.first == 1:

@@ -16,6 +16,9 @@ const float BEYOND = 2.0;
 // front of it in the mean as an even step has it behind its own beginning. Half the way is right in the mean.
 const float SHARP = 0.5;
 
+// Farthest [m] that a tree's voxels lie from its foot: 8 m along either axis.
+const float CROWN_REACH = 11.4;
+
 // Length of a step at a level [m].
 float step_at(float scale, float climb) {
     return geometry_step * voxel_size * min(scale, max(STEP_LAYERS / max(abs(climb), 1e-3), 1.0));
@@ -69,7 +72,7 @@ void geometry_trace(vec3 origin, vec3 direction, float t, vec4 jitter, inout Eve
             before = above;
             // No skip passes through the ground: a brink may stand in an empty canopy.
             float safe = step_above(over ? gap : above, direction, ground);
-            float skip = max((free_voxels(voxel) - 1.0) / rate, stand.y - GLADE_REACH);
+            float skip = max((free_voxels(voxel) - 1.0) / rate, stand.y - length(foot_of(p.xy, voxel) - p.xy) - CROWN_REACH);
             t += over ? max(safe, 0.5 * ds) : max(ds, min(skip, safe));
         }
     }
