@@ -79,6 +79,8 @@ def write(folder: Path, lines: Lines) -> str:
         ("codes", _codes(parts["codes"])),
     ):
         FigureCanvasAgg(figure)
+        if not figure.axes:
+            figure.text(0.5, 0.5, "not measured", ha="center")
         figure.savefig(folder / f"{name}.png", dpi=100, metadata={"Software": None})
         figure.savefig(folder / f"{name}.svg", metadata={"Date": None})
     text = table(parts)
@@ -115,12 +117,12 @@ def groups(lines: Lines) -> list[tuple[tuple[Any, ...], Lines]]:
 
 def said(setting: Sequence[Any]) -> list[str]:
     """The cells of a setting."""
-    texels, directions, selection, code, size, blend, shadow, _ = setting
+    texels, directions, selection, code, size, blend, shadow, points = setting
     extra = (f", {size} bytes" if size else "") + ("" if blend is None else ", blended" if blend else ", nearest")
-    return [str(texels), f"{directions:,}", selection, code + extra, str(shadow)]
+    return [str(texels), f"{directions:,}", selection, code + extra, f"{shadow:,}", f"{points:,}"]
 
 
-HEAD = ["texels", "directions", "selection", "code", "of light"]
+HEAD = ["texels", "directions", "selection", "code", "of light", "points"]
 
 
 def _errors(lines: Lines) -> str:
@@ -183,7 +185,7 @@ def _chief(lines: Lines) -> Figure:
         for style, (setting, own) in zip(("-", "--", ":"), groups([one for one in lines if one["preset"] == preset])):
             error = np.sort([line["away"] for line in own if line["away"] is not None])
             share = 100 * (np.arange(len(error)) + 0.5) / len(error)
-            axes.plot(share, error, style, color=colour, label=f"{preset}: {', '.join(said(setting))}")
+            axes.plot(share, error, style, color=colour, label=f"{preset}: {', '.join(said(setting)[:5])}")
     axes.axhline(0.1, color="grey", linewidth=0.8)
     axes.grid(True, alpha=0.2, which="both")
     if lines:

@@ -61,10 +61,12 @@ BEST = Setting(256, 2049, "position_corrected", shadow_directions=2049)
 CHIEF = (BASE, BEST)
 """What is taken as it comes, and what errs least: from every side in every sun."""
 
+CODED = replace(BASE, points=100_000)
+
 CODES = (
-    *(replace(BASE, code=code) for code in ("none", "bits", "exact_harmonics", "chosen")),
+    *(replace(CODED, code=code) for code in ("none", "bits", "exact_harmonics", "chosen")),
     *(
-        replace(BASE, code=code, size=size)
+        replace(CODED, code=code, size=size)
         for code, sizes in (
             ("harmonics", (5, 9, 17, 33)),
             ("spherical_harmonics", (5, 9, 17, 33)),
@@ -74,7 +76,7 @@ CODES = (
         for size in sizes
     ),
     *(
-        replace(BASE, shadow_directions=count, blend=blend)
+        replace(CODED, shadow_directions=count, blend=blend)
         for count in (33, 129, 513, 2049)
         for blend in (False, True)
     ),

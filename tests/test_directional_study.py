@@ -133,9 +133,9 @@ def test_a_study_goes_on_where_it_was_and_leaves_its_table(
     rows = [line for line in text.splitlines() if line.startswith("| 16 | 33 | position_corrected | bits |")]
     assert len(rows) == 2, "one of each preset"
     cells, other = ([cell.strip() for cell in row.strip("|").split("|")] for row in rows)  # the knot, and the land
-    assert (other[5], other[-1]) == ("0.125", "1")
+    assert (other[6], other[-1]) == ("0.125", "1")
     own = [line["away"] for line in lines[:2]]
-    assert cells[5:7] == [f"{np.median(own):.3f}", f"{max(own):.3f}"]
+    assert cells[6:8] == [f"{np.median(own):.3f}", f"{max(own):.3f}"]
     assert cells[-1] == "2"
 
 
