@@ -38,7 +38,7 @@ def bakes(state: ShellsState) -> list[Bake]:
     if not isinstance(state.picture, NoPicture) and state.base.opaque:
         wanted.append(picture_bake(state.picture))
     if state.things.list:
-        wanted.append(Bake("things", bake_things, thing_arguments(state.things), seconds=1))
+        wanted.append(Bake("things", bake_things, thing_arguments(state.things), version=3))
     for technique in state.techniques().values():
         wanted += technique.bakes(state)
     return list({(bake.name, str(bake.arguments)): bake for bake in wanted}.values())

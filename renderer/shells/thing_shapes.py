@@ -15,10 +15,15 @@ BALL_CELLS = 96
 """Of a ball, around it: its silhouette is at most 0.054 % of the radius inside of the sphere's."""
 
 PROFILE = np.array([
-    (0.0, 0.0), (0.82, 0.0), (0.82, 0.1), (0.74, 0.14), (0.6, 0.17), (0.55, 0.22), (0.52, 0.5), (0.55, 0.78),
-    (0.62, 0.84), (0.8, 0.88), (1.0, 0.91), (1.0, 1.0), (0.0, 1.0),
+    (0.0, 0.0), (0.82, 0.0), (0.82, 0.09), (0.79, 0.12), (0.72, 0.145), (0.64, 0.17), (0.58, 0.205), (0.54, 0.26),
+    (0.525, 0.34), (0.52, 0.5), (0.525, 0.66), (0.54, 0.74), (0.58, 0.795), (0.65, 0.835), (0.75, 0.865), (0.87, 0.885),
+    (1.0, 0.9), (1.0, 1.0), (0.0, 1.0),
 ])  # fmt: skip
 """Radius and height of a pedestal from the middle of its foot to that of its plate."""
+
+
+BENT = 0.85
+"""Cosine of the angle between two stretches of a profile below which their edge is seen."""
 
 
 @dataclass(frozen=True)
@@ -67,7 +72,35 @@ def ground() -> Shape:
 
 def pedestal() -> Shape:
     """A pedestal of radius 1 and height 1."""
-    return _of(surface_grids.turned(PROFILE, 48, 1.0, surface_grids.arc_lengths(PROFILE)))
+    return turned(PROFILE, 64)
+
+
+def turned(profile: np.ndarray, around: int) -> Shape:
+    """A curve turned around the z axis, smooth around it, and along it where it bends by less than `BENT`.
+
+    Args:
+        profile: (R + 1, 2) radius and height, its outside to the right. around: cells around the axis.
+    """
+    step = np.diff(profile, axis=0)
+    normal = np.stack([step[:, 1], -step[:, 0]], axis=-1) / np.linalg.norm(step, axis=1, keepdims=True)
+    ends = np.stack([normal, normal], axis=1)  # (R, 2, 2), where each stretch begins and ends
+    smooth = np.einsum("rk,rk->r", normal[:-1], normal[1:]) > BENT
+    middle = normal[:-1] + normal[1:]
+    middle /= np.maximum(np.linalg.norm(middle, axis=1, keepdims=True), 1e-9)
+    ends[:-1, 1][smooth] = ends[1:, 0][smooth] = middle[smooth]
+    angle = 2 * np.pi * np.arange(around + 1) / around
+    way = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+
+    def spun(flat: np.ndarray) -> np.ndarray:
+        """(R, 2, 2) ends of stretches as triangles' corners (2 R around, 3, 3)."""
+        whole = np.empty((len(flat), 2, around + 1, 3))
+        whole[..., :2], whole[..., 2] = flat[:, :, None, :1] * way, flat[:, :, None, 1]
+        a, b, c, d = whole[:, 0, :-1], whole[:, 0, 1:], whole[:, 1, 1:], whole[:, 1, :-1]
+        return np.stack([np.stack([a, b, c], axis=2), np.stack([a, c, d], axis=2)], axis=2).reshape(-1, 3, 3)
+
+    corners = spun(np.stack([profile[:-1], profile[1:]], axis=1))
+    whole = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1) > 1e-12
+    return Shape(corners[whole], spun(ends)[whole], np.ones((int(whole.sum()), 3)))
 
 
 SHAPES: dict[str, Callable[[], Shape]] = {"ground": ground, "box": box, "ball": ball, "pedestal": pedestal}
