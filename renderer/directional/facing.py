@@ -36,18 +36,20 @@ def directions_needed(camera: Any, face: int, box: np.ndarray, layout: Hemispher
     """Numbers of the directions of a face's hemisphere from which its texels may be asked: those round each direction
     that a texel is seen from, with one more on every side, since a pixel's ray comes from between them."""
     at = pose(camera)
-    places = face_middles(box, face, GRID)
-    to_eye = np.broadcast_to(-at.forward, places.shape) if isinstance(camera, Orthographic) else at.eye - places
-    local = to_eye / np.linalg.norm(to_eye, axis=-1, keepdims=True) @ face_frame(face).T
-    row = np.floor(np.arcsin(np.clip(local[:, 2], 0, 1)) / layout.step - 0.5).astype(int)
-    turn = np.arctan2(local[:, 1], local[:, 0]) / (2 * np.pi) * layout.azimuths
-    azimuth = np.floor(turn).astype(int)
+    away = face_middles(box, face, GRID)
+    to_eye = -at.forward[None] if isinstance(camera, Orthographic) else at.eye - away
+    u, v, out = (to_eye @ face_frame(face).T).T
+    row = np.floor(np.arctan2(np.maximum(out, 0), np.hypot(u, v)) / layout.step - 0.5).astype(int)
+    azimuth = np.floor(np.arctan2(v, u) / (2 * np.pi) * layout.azimuths).astype(int) % layout.azimuths
+    # Rows from one below the lowest, azimuths once around and again: what lies round a mark is then found by shifting.
+    marked = np.zeros((layout.elevations + 2, layout.azimuths), bool)
+    marked[row + 1, azimuth] = True
+    marked = np.logical_or.reduce([np.roll(marked, across, axis=1) for across in range(-1, 3)])
     needed = np.zeros((layout.elevations + 1, layout.azimuths), bool)
-    highest = int(row.max()) + 2
     for up in range(-1, 3):
-        for across in range(-1, 3):
-            needed[np.clip(row + up, 0, layout.elevations), (azimuth + across) % layout.azimuths] = True
-    if highest >= layout.elevations:  # round the zenith, azimuths between two texels may be any
+        to = np.clip(np.arange(-1, layout.elevations + 1) + up, 0, layout.elevations)
+        np.logical_or.at(needed, to, marked)
+    if row.max() + 2 >= layout.elevations:  # round the zenith, azimuths between two texels may be any
         needed[-4:] = True
     rows, azimuths = np.nonzero(needed[:-1])
     found = rows * layout.azimuths + azimuths

@@ -47,6 +47,14 @@ class Hemisphere:
         rows = np.stack([level * np.cos(azimuth), level * np.sin(azimuth), np.sin(elevation)], axis=-1)
         return np.concatenate([rows, [[0.0, 0.0, 1.0]]])
 
+    def cells(self) -> np.ndarray:
+        """(elevations * azimuths, 4) numbers of the directions round each cell between two rows and two azimuths: the
+        lower row's left and right, the upper one's."""
+        row, left = np.divmod(np.arange(self.elevations * self.azimuths), self.azimuths)
+        sides = np.stack([left, (left + 1) % self.azimuths], axis=-1)
+        lower, upper = row[:, None] * self.azimuths + sides, (row[:, None] + 1) * self.azimuths + sides
+        return np.concatenate([lower, np.minimum(upper, self.count - 1)], axis=-1)
+
     def nearest(self, directions: np.ndarray) -> np.ndarray:
         """Numbers (...) of the cells that unit vectors (..., 3) lie in; those below the horizon count as level."""
         elevation = np.arcsin(np.clip(directions[..., 2], 0.0, 1.0))

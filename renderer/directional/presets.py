@@ -22,15 +22,12 @@ def _sun(azimuth: float, elevation: float) -> dict[str, Any]:
     return {"kind": "direction", "azimuth": azimuth, "elevation": elevation}
 
 
-_CORRECTED = {"kind": "position_corrected"}
-
 PRESETS = {
     "teapot": Preset(
         "Teapot",
         "Painted porcelain in the sun, by Phong's model.",
         {
             "subject": {"kind": "teapot"},
-            "selection": _CORRECTED,
             "light": {"kind": "phong", "diffuse": 0.8, "specular": 0.2, "shininess": 120},
             "camera": _camera(4.0, 160, 24, 0.45),
             "sun": _sun(205, 42),
@@ -41,7 +38,6 @@ PRESETS = {
         "Its wings lay shadows on its back.",
         {
             "subject": {"kind": "dragon"},
-            "selection": _CORRECTED,
             "camera": _camera(4.0, 140, 18, 0.75),
             "sun": _sun(215, 38),
         },
@@ -49,7 +45,7 @@ PRESETS = {
     "knot": Preset(
         "Knot",
         "A rope of three strands, knotted: it hides much of itself from the sun.",
-        {"selection": _CORRECTED, "camera": _camera(4.4, 150, 30, 0.35)},
+        {"camera": _camera(4.4, 150, 30, 0.35)},
     ),
     "thesis": Preset(
         "As in the thesis",
@@ -71,7 +67,6 @@ PRESETS = {
         "A lamp shines out of it through its wicker's gaps.",
         {
             "subject": {"kind": "basket"},
-            "selection": _CORRECTED,
             "lamp": {"lit": True, "place": [0.0, 0.0, 0.75], "intensity": 60.0},
             "camera": _camera(4.9, 150, 26, 0.95),
             "sun": _sun(230, 14),
@@ -82,7 +77,6 @@ PRESETS = {
         "Leaves are thinner than a texel: what remains of them is what the texels' middles meet.",
         {
             "subject": {"kind": "tree"},
-            "selection": _CORRECTED,
             "light": {"kind": "phong", "specular": 0.03},
             "camera": _camera(4.4, 150, 8, 1.0),
             "sun": _sun(215, 40),
@@ -93,7 +87,6 @@ PRESETS = {
         "A block of land under a low sun: each point knows its own horizon.",
         {
             "subject": {"kind": "relief"},
-            "selection": _CORRECTED,
             "light": {"kind": "phong", "specular": 0.0},
             "self_shadow": {"kind": "bits"},
             "camera": _camera(5.0, 150, 32, 0.1),
@@ -105,7 +98,6 @@ PRESETS = {
         "Layers of stone in raking light.",
         {
             "subject": {"kind": "rock"},
-            "selection": _CORRECTED,
             "light": {"kind": "phong", "specular": 0.04},
             "camera": _camera(4.6, 165, 16, 0.6),
             "sun": _sun(235, 28),
@@ -121,7 +113,6 @@ PRESETS = {
             "material": {"kind": "validation"},
             "view": {"exposure": -0.5},
             "light": {"kind": "measured_brdf"},
-            "selection": _CORRECTED,
         },
     ),
     "satin": Preset(
@@ -133,7 +124,6 @@ PRESETS = {
             "material": {"kind": "satin"},
             "view": {"exposure": 0.0},
             "light": {"kind": "measured_brdf", "ambient": 0.5},
-            "selection": _CORRECTED,
         },
     ),
     "studio": Preset(
@@ -145,7 +135,6 @@ PRESETS = {
             "material": {"kind": "metal"},
             "environment": {"kind": "studio"},
             "light": {"kind": "combined", "surface": "measured", "surface_share": 0.6, "matt": 0.2},
-            "selection": _CORRECTED,
         },
     ),
     "evening": Preset(
@@ -156,7 +145,6 @@ PRESETS = {
             "camera": _camera(3.9, 150, 6, 0.45),
             "environment": {"kind": "evening", "rotation": 100.0},
             "light": {"kind": "environment"},
-            "selection": _CORRECTED,
         },
     ),
 }

@@ -34,6 +34,7 @@ uniform vec2 pixel_offset;        // of the sample within its pixel, from the to
 SEEN_DECLARATIONS = """uniform usampler2DArray seen;     // point numbers
 uniform usampler2DArray seen_depth;
 uniform isampler2D seen_layer;    // of a direction and a face
+uniform isampler2D seen_round;    // of four directions round a place of a face's hemisphere
 uniform sampler2D tile_bounds;    // nearest and farthest of a block of pixels, m from the eye
 uniform int strip_faces[3];       // that the strips of the picture of faces show"""
 

@@ -10,6 +10,7 @@ import numpy as np
 from renderer.core.errors import LimitError
 from renderer.core.technique import Arrays
 from renderer.directional.casting import AXES, NONE
+from renderer.directional.hemisphere import hemisphere_of
 from renderer.directional.tiles import occupied
 from renderer.directional.visibility import layer
 from renderer.gl.context import GL
@@ -49,12 +50,16 @@ class Seen:
         self.cells = occupied(positions, box)
         share = (positions - box[0]) / (box[1] - box[0])
         self._height = np.ascontiguousarray(np.rint(np.clip(share.T, 0, 1) * DEEPEST).astype(np.uint16))
+        layout = hemisphere_of(directions)
+        self._cells = layout.cells()
         self._table = gl.texture2d(self._where, "nearest")
+        self._round = gl.texture2d(self._where[:, self._cells], "nearest")
 
     @property
     def textures(self) -> dict[str, Any]:
         """Samplers of `shaders/directional/faces.glsl`."""
-        return {"seen": self._layers, "seen_depth": self._depths, "seen_layer": self._table}
+        return {"seen": self._layers, "seen_depth": self._depths, "seen_layer": self._table,
+                "seen_round": self._round}  # fmt: skip
 
     def hold(self, wanted: Iterable[tuple[int, int]]) -> None:
         """Have the layers of these faces and directions.
@@ -87,10 +92,12 @@ class Seen:
             self._depths.write(depths.tobytes(), viewport=(0, 0, place, side, side, 1), alignment=1)
             self._holds[place], self._asked[place], self._where[pair] = pair, self._turn, place
         self._table.write(self._where.tobytes(), alignment=1)
+        self._round.write(self._where[:, self._cells].tobytes(), alignment=1)
 
     def release(self) -> None:
         """Free everything."""
         self._table.release()
+        self._round.release()
         if self._layers is not None:
             self._layers.release()
             self._depths.release()

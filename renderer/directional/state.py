@@ -19,7 +19,7 @@ from renderer.world.state import SceneState
 from renderer.world.sun import Sun, SunDirection
 
 SLOTS = ("selection", "light", "self_shadow")
-DEFAULTS = {"selection": "nearest", "light": "phong", "self_shadow": "bits"}
+DEFAULTS = {"selection": "position_corrected", "light": "phong", "self_shadow": "bits"}
 
 
 def _slot(name: str, title: str, help_text: str) -> Any:

@@ -2,7 +2,8 @@
 //
 // Symbols: face, 0 to 5: -x, +x, -y, +y, -z, +z; its axes u and v run along y z, x z or x y. TEXELS, d: a face has d x d
 // texels. seen, layers of point numbers; seen_depth, of how
-// deep they lie, 65534 the box's depth; seen_layer, the layer of each face and direction, or -1.
+// deep they lie, 65534 the box's depth; seen_layer, the layer of each face and direction, or -1;
+// seen_round, those of the four directions of a cell of a face's hemisphere.
 // Directions point from the surface to the eye, in the face's axes (u, v, outward normal).
 
 struct Entry {

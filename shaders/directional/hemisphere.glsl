@@ -27,31 +27,33 @@ int hemisphere_nearest(vec3 direction, int azimuths, int elevations) {
     return hemisphere_index(int(place.x), int(place.y + 0.5), azimuths, elevations);
 }
 
-// The four directions round a unit direction, and their bilinear weights, 1 together. Below the lowest row it counts as
-// being on it.
-void hemisphere_around(vec3 direction, int azimuths, int elevations, out ivec4 around, out vec4 weights) {
+// Lower row and left azimuth of the four directions round a unit direction, and where it lies between them. Below the
+// lowest row it counts as being on it.
+ivec2 hemisphere_cell(vec3 direction, int azimuths, int elevations, out vec2 along) {
     vec2 place = hemisphere_place(direction, azimuths, elevations);
     float row = clamp(place.x - 0.5, 0.0, float(elevations));
-    int low = min(int(row), elevations - 1);
-    int left = int(place.y);
-    vec2 along = vec2(row - float(low), place.y - float(left));
-    around = ivec4(hemisphere_index(low, left, azimuths, elevations),
-                   hemisphere_index(low, left + 1, azimuths, elevations),
-                   hemisphere_index(low + 1, left, azimuths, elevations),
-                   hemisphere_index(low + 1, left + 1, azimuths, elevations));
+    ivec2 cell = ivec2(min(int(row), elevations - 1), int(place.y));
+    along = vec2(row, place.y) - vec2(cell);
+    return cell;
+}
+
+// The four directions round a unit direction, and their bilinear weights, 1 together.
+void hemisphere_around(vec3 direction, int azimuths, int elevations, out ivec4 around, out vec4 weights) {
+    vec2 along;
+    ivec2 cell = hemisphere_cell(direction, azimuths, elevations, along);
+    around = ivec4(hemisphere_index(cell.x, cell.y, azimuths, elevations),
+                   hemisphere_index(cell.x, cell.y + 1, azimuths, elevations),
+                   hemisphere_index(cell.x + 1, cell.y, azimuths, elevations),
+                   hemisphere_index(cell.x + 1, cell.y + 1, azimuths, elevations));
     weights = vec4((1.0 - along.x) * vec2(1.0 - along.y, along.y), along.x * vec2(1.0 - along.y, along.y));
 }
 
-// The four directions round a unit direction with their weights, and how far along u and v each runs for one along the
-// normal.
-void hemisphere_slants(vec3 direction, int azimuths, int elevations, out ivec4 around, out vec4 weights, out vec4 u,
-                       out vec4 v) {
-    hemisphere_around(direction, azimuths, elevations, around, weights);
-    int zenith = azimuths * elevations;
-    vec2 row = vec2(around.xz / azimuths);
-    vec2 elevation = (row + 0.5) * HALF_PI / (float(elevations) + 0.5);
-    vec2 slant = vec2(cos(elevation.x) / sin(elevation.x), around.z == zenith ? 0.0 : cos(elevation.y) / sin(elevation.y));
-    vec2 turn = vec2(around.xy % azimuths) * (TURN / float(azimuths));
+// How far along the first axis (u) and the second (v) the four directions of a cell run for one along the normal.
+void hemisphere_slants(ivec2 cell, int azimuths, int elevations, out vec4 u, out vec4 v) {
+    vec2 elevation = (vec2(cell.x, cell.x + 1) + 0.5) * (HALF_PI / (float(elevations) + 0.5));
+    vec2 slant = cos(elevation) / sin(elevation);
+    slant.y = cell.x + 1 == elevations ? 0.0 : slant.y; // the zenith
+    vec2 turn = vec2(cell.y, cell.y + 1) * (TURN / float(azimuths));
     u = slant.xxyy * cos(turn).xyxy;
     v = slant.xxyy * sin(turn).xyxy;
 }

@@ -39,3 +39,15 @@ def test_cells_hold_what_their_solid_angles_say() -> None:
 def test_what_is_below_the_horizon_counts_as_level() -> None:
     layout = Hemisphere(16, 8)
     assert layout.nearest(np.array([0.6, 0.0, -0.8])) == layout.nearest(np.array([1.0, 0.0, 0.0])) == 0
+
+
+@pytest.mark.parametrize("count", LAYOUTS)
+def test_a_cell_lies_between_its_four_directions(count: int) -> None:
+    layout = hemisphere_of(count)
+    cells, directions = layout.cells(), layout.directions()
+    middle = directions[cells].sum(axis=1)
+    middle /= np.linalg.norm(middle, axis=1, keepdims=True)
+    for corner in range(4):
+        number = cells[:, corner]
+        towards = middle + 3 * directions[number]
+        np.testing.assert_array_equal(layout.nearest(towards / np.linalg.norm(towards, axis=1, keepdims=True)), number)

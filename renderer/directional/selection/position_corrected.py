@@ -19,10 +19,11 @@ class PositionCorrected(DirectionalTechnique):
 
     kind: Literal["position_corrected"] = "position_corrected"
     steps: int = param(
-        2, label="Steps", help="How often a ray is looked at while it crosses a texel of a direction.", unit="count",
-        cost="build", ge=1, le=12,
+        64, label="Steps", help="How many texels a ray runs through at most in each direction.", unit="count",
+        cost="build", ge=8, le=256,
     )
     reach: float = param(
-        0.8, label="Reach", help="How far from the ray a point may lie, in texels of the box's longest side.",
+        0.4, label="Reach",
+        help="How far a ray may pass behind a texel that no direction sees past, in texels of the longest side.",
         unit="ratio", ge=0.1, le=8, step=0.1,
     )
