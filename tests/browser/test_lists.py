@@ -91,9 +91,10 @@ def test_key_frames_are_added_moved_and_taken_out(open_page: Open, keyed: dict[s
     page.get_by_role("radio", name="Interpolated").check()
     assert house.state_of(page)["motion"] == {"kind": "keys", "planes": "interpolated"}
     assert violations(page) == []
-    page.get_by_role("button", name="Let time run").first.click()
-    house.until(page, "umbrage.store.document.time > 7.7")
-    page.get_by_role("button", name="Hold time").first.click()
+    before = house.state_of(page)["time"]
+    page.locator(".key-frames").get_by_role("button", name="Let time run").click()
+    house.until(page, f"umbrage.store.document.time !== {before}")
+    page.locator(".key-frames").get_by_role("button", name="Hold time").click()
     page.locator(".key-mark").nth(2).focus()
     page.keyboard.press("Delete")
     assert [key["at"] for key in keys(page)] == [0, 4]
