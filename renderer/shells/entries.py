@@ -41,7 +41,7 @@ class View:
 
 
 class _Sheet:
-    """Every second layer of one view, one above the other in one texture.
+    """The first layer of one view, or every second of the others, one above the other in one texture.
 
     A layer reads the one before, which may therefore not lie in the texture it is drawn into.
     """
@@ -66,6 +66,7 @@ class Layers:
         self.size = size
         self.rows = rows
         self.count = 0
+        self.first = _Sheet(gl, *size)
         self.sheets = [_Sheet(gl, size[0], size[1] * rows) for _ in range(2)]
         self._shown: dict[tuple[Kind, ...], Hashable] = {}
         self._drawn: dict[tuple[Kind, ...], tuple[list[moderngl.Texture], moderngl.Framebuffer]] = {}
@@ -77,8 +78,9 @@ class Layers:
 
     @property
     def textures(self) -> dict[str, AnyTexture]:
-        """`entry_even` and `entry_odd`."""
-        return {"entry_even": self.sheets[0].texture, "entry_odd": self.sheets[1].texture}
+        """`entry_first`, `entry_odd` and `entry_even`."""
+        odd, even = (sheet.texture for sheet in self.sheets)
+        return {"entry_first": self.first.texture, "entry_odd": odd, "entry_even": even}
 
     @property
     def values(self) -> dict[str, Any]:
@@ -104,19 +106,17 @@ class Layers:
             everywhere: whether it runs where no ray comes in, too: for a camera within the shell.
 
         Returns:
-            The textures, whose lowest rows are the picture; they hold until the next drawing of the same kinds.
+            The textures; they hold until the next drawing of the same kinds.
         """
         if kinds not in self._drawn:
-            size = self.sheets[0].texture.size
-            made = [_texture(self._gl, size, kind) for kind in kinds]
-            self._drawn[kinds] = made, self._gl.ctx.framebuffer(made, self.sheets[0].depth)
+            made = [_texture(self._gl, self.size, kind) for kind in kinds]
+            self._drawn[kinds] = made, self._gl.ctx.framebuffer(made, self.first.depth)
         made, framebuffer = self._drawn[kinds]
         if shows is not None and self._shown.get(kinds) == shows:
             return made
         self._shown[kinds] = shows
         framebuffer.depth_mask = False
         framebuffer.use()
-        framebuffer.viewport = 0, 0, *self.size
         framebuffer.clear(nothing, nothing, nothing, nothing)
         run = run_fullscreen if everywhere else run_covered
         run(self._gl, fragment, {**textures, **self.textures}, {**values, **self.values})
@@ -129,8 +129,12 @@ class Layers:
             for texture in made:
                 texture.release()
         self._drawn = {}
-        for sheet in self.sheets:
+        for sheet in (self.first, *self.sheets):
             sheet.release()
+
+    def place(self, layer: int) -> tuple[_Sheet, int]:
+        """The sheet of a layer, and the row where it begins."""
+        return (self.sheets[(layer - 1) % 2], (layer - 1) // 2 * self.size[1]) if layer else (self.first, 0)
 
 
 class Entries:
@@ -182,23 +186,24 @@ class Entries:
         ctx.enable_only(moderngl.DEPTH_TEST | moderngl.CULL_FACE)
         query = ctx.query(samples=True)
         layers.begin()
-        for sheet in layers.sheets:
+        for sheet in (layers.first, *layers.sheets):
             sheet.framebuffer.use()
-            sheet.framebuffer.viewport = (0, 0, size[0], size[1] * layers.rows)
+            sheet.framebuffer.viewport = (0, 0, *sheet.texture.size)
             sheet.framebuffer.clear(-1.0, -1.0, 0.0, 0.0)
-        for layer in range(2 * layers.rows):
-            sheet, before = layers.sheets[layer % 2], layers.sheets[(layer + 1) % 2]
+        for layer in range(1 + 2 * layers.rows):
+            sheet, row = layers.place(layer)
             sheet.framebuffer.use()
-            sheet.framebuffer.viewport = (0, layer // 2 * size[1], *size)
-            rows = {"layer_row": layer // 2 * size[1], "before_row": (layer - 1) // 2 * size[1]} if layer else {}
-            textures = {"entry_before": before.texture} if layer else {}
+            sheet.framebuffer.viewport = (0, row, *size)
+            before, before_row = layers.place(layer - 1) if layer else (None, 0)
+            rows = {"layer_row": row, "before_row": before_row} if layer else {}
+            textures = {"entry_before": before.texture} if before else {}
             with query:
                 view.triangles.draw(fragments[min(layer, 1)], textures, {"view_projection": view.projection, **rows})
             if query.samples == 0:
                 break
             layers.count = layer + 1
         ctx.enable_only(moderngl.NOTHING)
-        return layers.count < 2 * layers.rows
+        return layers.count < 1 + 2 * layers.rows
 
 
 def _texture(gl: GL, size: tuple[int, int], kind: Kind) -> moderngl.Texture:

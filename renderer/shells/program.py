@@ -10,6 +10,7 @@ from renderer.core.params import defines, uniform_declarations
 from renderer.core.registry import glsl_file
 from renderer.gl.source import Source, assemble
 from renderer.shells.base_picture import Laid, laid_by
+from renderer.shells.texture.strides import DECLARATIONS as CODED_DECLARATIONS
 from renderer.shells.voxels import Base, Voxels
 from renderer.shells.world_scale import OPAQUE
 from renderer.world.camera import CAMERA_DECLARATIONS
@@ -25,8 +26,9 @@ WORLD_DECLARATIONS = """uniform sampler2D shell_tets;
 uniform sampler2D shell_base;
 uniform sampler3D shell_matter;
 uniform sampler3D shell_normal;
-uniform sampler2D entry_even;     // distance, m, and tetrahedron where rays come in: layers 0, 2, ...
-uniform sampler2D entry_odd;
+uniform sampler2D entry_first;    // depth, and 4 tetrahedron + face where rays come in: layer 0
+uniform sampler2D entry_odd;      // layers 1, 3, ...
+uniform sampler2D entry_even;     // layers 2, 4, ...
 uniform int entry_layers;
 uniform int entry_height;         // px, of one layer
 uniform int start_tet;            // that holds the camera, or -1
@@ -82,13 +84,7 @@ uniform vec2 picture_repeats;    // pictures a repeat of the texture"""
 LAID = {None: 0, "globe": 1, "texture": 2}
 """How a picture is laid on the surface, to its number in `BASE_PICTURE`."""
 
-WALK_BODY = """layout(location = 0) out vec4 gathered;
-void main() {
-    ivec2 pixel = ivec2(gl_FragCoord.xy);
-    Ray ray = pixel_ray(gl_FragCoord.xy);
-    vec4 sum = vec4(0.0);
-    gather_begin();
-#if THINGS == 1
+WALK = """#if THINGS == 1
     thing_limit = thing_distance();
 #endif
     bool met = %s;
@@ -99,12 +95,18 @@ void main() {
         if (entry.x >= thing_limit) break;
 #endif
         if (entry_behind(entry)) {
-            sum += (1.0 - sum.a) * vec4(base_radiance(ray, int(entry.y), BASE_FACE, entry.x), 1.0);
+            base_met(ray, int(entry.y), BASE_FACE, entry.x, sum);
             break;
         }
         met = order_walk(ray, int(entry.y), max(entry.x, 0.0), sum);
-    }
-    gather_rest(ray, sum);
+    }"""
+
+WALK_BODY = """layout(location = 0) out vec4 gathered;
+void main() {
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    Ray ray = pixel_ray(gl_FragCoord.xy);
+    vec4 sum = vec4(0.0);
+%s
     gathered = buffer_of(sum);
 }"""
 
@@ -170,8 +172,12 @@ def entry_sources() -> tuple[Source, Source]:
 
 def walk_source(state: ShellsState, inside: bool) -> Source:
     """The fragment stage that walks each ray through the shell, from the camera's cell where it is inside of one."""
-    body = WALK_BODY % ("order_walk(ray, start_tet, 0.0, sum)" if inside else "false")
-    return composed(chosen(state, LIT_SLOTS), variant_of(state), ("shells/entry.glsl",), body)
+    return composed(chosen(state, LIT_SLOTS), variant_of(state), ("shells/entry.glsl",), WALK_BODY % walk_loop(inside))
+
+
+def walk_loop(inside: bool) -> str:
+    """The lines that follow a ray from where it comes in to where it ends."""
+    return WALK % ("order_walk(ray, start_tet, 0.0, sum)" if inside else "false")
 
 
 def compose_source(state: ShellsState) -> Source:
@@ -206,7 +212,7 @@ def composed(
                     PICTURE_DECLARATIONS if variant.picture else "", more]
     macros = variant.defines()
     if techniques:
-        files.append("shells/matter.glsl")
+        files += ["shells/matter.glsl", "shells/coded.glsl"]
     for slot, technique, build in techniques:
         if slot == "order":
             files += ["shells/base.glsl", "shells/base_picture.glsl"]
@@ -232,7 +238,7 @@ def composed(
 def world_declarations() -> str:
     """Uniforms of camera, shell, texture and light."""
     models = (uniform_declarations(Voxels, "voxels"), uniform_declarations(Base, "base"))
-    return "\n".join([CAMERA_DECLARATIONS, SKY_DECLARATIONS, WORLD_DECLARATIONS, *models])
+    return "\n".join([CAMERA_DECLARATIONS, SKY_DECLARATIONS, WORLD_DECLARATIONS, CODED_DECLARATIONS, *models])
 
 
 def technique_declarations(slot: str, technique: type[ShellsTechnique]) -> list[str]:

@@ -236,7 +236,7 @@ def thinned(state: ShellsState, opacity: float) -> ShellsState:
 
 def _samplers(texture: Uploaded) -> dict[str, AnyTexture]:
     found: dict[str, AnyTexture] = {"shell_matter": texture.matter, "shell_normal": texture.normal}
-    beside = {"filter_beside": texture.beside, "sampling_voxels": texture.coded}
+    beside = {"filter_beside": texture.beside, "shell_coded": texture.coded}
     return found | {name: made for name, made in beside.items() if made is not None}
 
 

@@ -23,7 +23,7 @@ from renderer.world.sun import Sun, SunDirection
 SLOTS = ("order", "sampling", "light", "shadow", "filter", "accumulation")
 DEFAULTS = {
     "order": "walk",
-    "sampling": "stochastic",
+    "sampling": "quantiles",
     "light": "lambert",
     "shadow": "deep_shadow_map",
     "filter": "mipmap",

@@ -98,8 +98,12 @@ def upload(
     matter, normal, *rest = (
         gl.texture3d(part[0], _between(voxels), (side, side, "clamp"), part[1:]) for part in stored
     )
-    codes = coded(strides, [level.matter for level in made]) if strides is not None else []
-    bytewise = gl.texture3d(codes[0], "nearest", (side, side, "clamp"), codes[1:]) if codes else None
+    bytewise = None
+    if strides is not None:
+        codes = coded(strides, [part[0][..., 3] / np.float32(greatest) for part in parts])
+        bytewise = gl.texture3d(codes[0], _between(voxels), (side, side, "clamp"), codes[1:])
+        if codes[1:] and voxels.interpolation != "nearest":
+            bytewise.filter = moderngl.LINEAR_MIPMAP_NEAREST, moderngl.LINEAR  # levels are whole ones
     coding = (255 / 127, -128 / 127) if kind == "bytes" else (1.0, 0.0)
     scale = greatest / texture.reference_length
     return Uploaded(matter, normal, rest[0] if rest else None, bytewise, scale, len(made) - 1, coding)

@@ -24,6 +24,19 @@ const int BASE_FACE = 3; // of the first tetrahedron of a prism
 vec3 base_radiance(Ray ray, int tet, int face, float t) {
     vec3 point = ray.origin + t * ray.direction, outward = tet_texel(tet, max(face, 0)).xyz;
     tet_here = tet;
+    tet_segment(ray, tet, t, t);
     float side = dot(outward, ray.direction) > 0.0 ? 1.0 : -1.0;
     return light_base(point, side * base_normal(tet, point), side * dot(outward, sun_direction) < 0.0, base_reflectance(point, tet, t));
 }
+
+#ifdef TRACED
+vec2 base_hit = vec2(-1.0); // where a ray met the surface, m, and 4 tetrahedron + face
+
+void base_met(Ray ray, int tet, int face, float t, inout vec4 sum) {
+    base_hit = vec2(t, float(4 * tet + max(face, 0)));
+}
+#else
+void base_met(Ray ray, int tet, int face, float t, inout vec4 sum) {
+    sum += (1.0 - sum.a) * vec4(base_radiance(ray, tet, face, t), 1.0);
+}
+#endif

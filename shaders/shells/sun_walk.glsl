@@ -22,18 +22,27 @@ struct SunWay {
     float depth;
 };
 
-// Even matter from one distance to another.
-void sun_pass(inout SunWay way, float from, float to, float depth) {
-    vec4 near = (-log(SUN_NEAR) - way.depth) / max(depth, 1.0e-12);
-    vec3 far = (-log(SUN_FAR) - way.depth) / max(depth, 1.0e-12);
-    way.near = mix(way.near, from + near * (to - from), step(0.0, near) * step(near, vec4(1.0)));
-    way.far = mix(way.far, from + far * (to - from), step(0.0, far) * step(far, vec3(1.0)));
+const vec4 SUN_NEAR_DEPTH = -log(SUN_NEAR);
+const vec3 SUN_FAR_DEPTH = -log(SUN_FAR);
+
+// Even matter from a distance on: steps of the curve that are not passed yet are laid where it would pass them.
+void sun_pass(inout SunWay way, float from, float length_of_it, float depth) {
+    float slowness = length_of_it / max(depth, 1.0e-12);
+    way.near = mix(way.near, from + (SUN_NEAR_DEPTH - way.depth) * slowness, greaterThanEqual(SUN_NEAR_DEPTH, vec4(way.depth)));
+    way.far = mix(way.far, from + (SUN_FAR_DEPTH - way.depth) * slowness, greaterThanEqual(SUN_FAR_DEPTH, vec3(way.depth)));
     way.depth += depth;
+}
+
+// Behind all matter: steps that were not passed are nowhere.
+void sun_settle(inout SunWay way) {
+    way.near = mix(way.near, vec4(NEVER), greaterThan(SUN_NEAR_DEPTH, vec4(way.depth)));
+    way.far = mix(way.far, vec3(NEVER), greaterThan(SUN_FAR_DEPTH, vec3(way.depth)));
 }
 
 // The opaque surface ends the way. slope: by how many texels it falls within one; the curve's next step, which is not reached,
 // is laid where the curve runs through this end.
 void sun_stop(inout SunWay way, float end, float slope) {
+    sun_settle(way);
     way.stop = floor(SUN_EIGHTHS * (end / shadow_texel + slope)) + 0.01 + 0.98 * exp(-way.depth);
     float before = 0.0, from = way.near.x;
     for (int i = 0; i < 7 && way.near.x < NEVER; i++) {
@@ -51,19 +60,24 @@ void sun_stop(inout SunWay way, float end, float slope) {
 // Returns whether the ray met the opaque surface on its way.
 bool sun_walk(Ray ray, int tet, float enter, inout SunWay way) {
     int steps = 0, face = -1, last = tet;
+    float empty = 0.0; // voxels along any axis in which nothing is
     do {
         Exit exit = tet_exit(ray, tet, enter);
         Segment segment = tet_segment(ray, tet, enter, exit.t);
-        float level = filter_level(enter, segment.gradients);
-        vec3 voxels = (segment.to - segment.from) * vec3(textureSize(shell_matter, 0)) * exp2(-level);
-        float share = 1.0 / clamp(ceil(length(voxels)), 1.0, 64.0);
-        float length_of_step = (exit.t - enter) * share, lambda = 0.0;
-        do {
-            float depth = matter_extinction(mix(segment.from, segment.to, lambda + 0.5 * share), level) * length_of_step;
-            float from = mix(enter, exit.t, lambda);
-            sun_pass(way, from, from + length_of_step, depth);
-            lambda += share;
-        } while (lambda < 0.999 && way.depth < SUN_DARK);
+        float level = floor(filter_level(enter, segment.gradients) + 0.5);
+        vec3 voxels = abs(segment.to - segment.from) * vec3(textureSize(shell_coded, 0)) * exp2(-level);
+        float share = 1.0 / clamp(ceil(length(voxels)), 1.0, 64.0), along = max(max(voxels.x, voxels.y), max(voxels.z, 1.0e-6)) * share;
+        float length_of_step = (exit.t - enter) * share, lambda = min(floor(max(empty, 0.0) / along) * share, 1.0);
+        empty -= along / share;
+        while (lambda < 0.999 && way.depth < SUN_DARK) {
+            vec3 place = mix(segment.from, segment.to, lambda + 0.5 * share);
+            Coded coded = coded_at(place, level);
+            float turns = clamp(floor(coded.stride / along), 1.0, (1.0 - lambda) / share);
+            float depth = filter_extinction(matter_stored(coded.number), place, level) * length_of_step * turns;
+            sun_pass(way, enter + (exit.t - enter) * lambda, length_of_step * turns, depth);
+            empty = coded.number > 0.0 ? 0.0 : coded.stride - (1.0 - lambda - 0.5 * share) * along / share;
+            lambda += share * turns;
+        }
         enter = exit.t;
         bool going = steps < 1024; // chosen, not set: see order/walk.glsl
         face = going ? exit.face : face;

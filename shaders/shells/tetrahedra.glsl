@@ -9,7 +9,10 @@ const int BEYOND_TOP = -1;    // instead of a neighbour: the shell's top, its ba
 const int BEYOND_BASE = -2;
 const int BEYOND_RIM = -3;
 
-vec3 way_shares = vec3(0.0); // squares of a ray's direction by the texture's axes, of the segment that was found last
+vec3 way_shares = vec3(0.0); // squares of a ray's direction by the texture's axes, of the segment that was found last;
+vec3 way_from = vec3(0.0);    // texture coordinates of a place of it,
+vec3 way_point = vec3(0.0);   // the place, m,
+mat3 way_gradients = mat3(0.0); // and its gradients, 1/m
 int tet_here = -1;            // that holds what is lit, where the order of drawing tells it
 
 struct Ray {
@@ -33,7 +36,7 @@ struct Exit {
 };
 
 vec4 tet_texel(int tet, int item) {
-    return texelFetch(shell_tets, ivec2((tet % TET_ROW) * 8 + item, tet / TET_ROW), 0);
+    return texelFetch(shell_tets, ivec2(((tet & (TET_ROW - 1)) << 3) + item, tet >> 9), 0);
 }
 
 // Distance at which a ray meets a plane.
@@ -66,7 +69,10 @@ Segment way_segment(Ray ray, float near, float far, vec4 u, vec4 v, vec4 w) {
     vec3 slope = vec3(dot(u.xyz, ray.direction), dot(v.xyz, ray.direction), dot(w.xyz, ray.direction));
     vec3 shares = slope * slope / max(vec3(dot(u.xyz, u.xyz), dot(v.xyz, v.xyz), dot(w.xyz, w.xyz)), 1.0e-20);
     way_shares = shares / max(shares.x + shares.y + shares.z, 1.0e-20);
-    return Segment(start + near * slope, start + far * slope, near, far, mat3(u.xyz, v.xyz, w.xyz));
+    way_gradients = mat3(u.xyz, v.xyz, w.xyz);
+    way_from = start + near * slope;
+    way_point = ray.origin + near * ray.direction;
+    return Segment(way_from, start + far * slope, near, far, way_gradients);
 }
 
 Segment tet_segment(Ray ray, int tet, float near, float far) {

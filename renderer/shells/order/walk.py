@@ -8,6 +8,7 @@ from renderer.core.params import param
 from renderer.gl.layers import Kind
 from renderer.shells.program import compose_source, walk_source
 from renderer.shells.technique import OrderTechnique
+from renderer.shells.traced import lit_along_traces
 
 if TYPE_CHECKING:
     from renderer.gl.program import AnyTexture
@@ -31,7 +32,11 @@ class Walk(OrderTechnique):
         inside = frame.values["start_tet"] >= 0
         if frame.things is not None:
             frame.textures["thing_seen"] = frame.things.seen(frame)
-        source, layers = walk_source(frame.state, inside), frame.entries()
-        kinds: tuple[Kind, ...] = ((4, frame.state.accumulation.dtype),)
-        gathered = layers.draw(kinds, 0.0, source, frame.textures, frame.values, everywhere=inside)[0]
+        layers = frame.entries()
+        if frame.state.sampling.whole:
+            gathered = lit_along_traces(frame, layers, inside)
+        else:
+            kinds: tuple[Kind, ...] = ((4, frame.state.accumulation.dtype),)
+            source = walk_source(frame.state, inside)
+            gathered = layers.draw(kinds, 0.0, source, frame.textures, frame.values, everywhere=inside)[0]
         return compose_source(frame.state), {**frame.textures, "gathered": gathered}, frame.values

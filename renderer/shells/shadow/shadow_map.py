@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal
 from renderer.core.params import param
 from renderer.gl.source import Source
 from renderer.shells.program import chosen, composed, variant_of
-from renderer.shells.shadow.deep_shadow_map import MAP_DECLARATIONS
+from renderer.shells.sun_curves import MAP_DECLARATIONS
 from renderer.shells.technique import ShadowTechnique
 
 if TYPE_CHECKING:

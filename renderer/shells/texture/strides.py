@@ -1,7 +1,8 @@
-"""A byte a voxel: how dense its matter is, and how far a ray may go on in the like of it.
+"""Few bytes a voxel: how dense its matter is, and how far a ray may go on in the like of it.
 
-Formulas g, Chebyshev distances. In nothing the byte is the distance to the nearest matter; elsewhere it holds the
-square root of the extinction, in finer steps where all voxels around are faint, so that a ray may take longer steps.
+Formulas g, Chebyshev distances. In nothing the first byte falls with the distance to the nearest matter; from `FIRST`
+on it counts opacity, whose finer part is the second byte: each may be interpolated by itself. Where some matter is
+faint, a third tells how far a ray may go on in it.
 """
 
 from __future__ import annotations
@@ -13,35 +14,32 @@ import numba
 import numpy as np
 
 from renderer.core.technique import Arrays, Bake
-from renderer.shells.texture.block import CLAMP
 from renderer.shells.texture.occupancy import FARTHEST, distances
 
-DENSEST = float(-np.log(CLAMP))
-"""Extinction of a reference length that the greatest byte stands for."""
+FIRST = 96
+"""First byte of matter's opacity; those below tell how far it is."""
+
+PER_VOXEL = 4
+"""Bytes below `FIRST` that a voxel's distance takes."""
 
 FAINT = 0.06
 """Extinction of a voxel's height below which matter is faint."""
 
-STRIDE = 6
-"""Distance to other than faint matter from which a faint voxel counts as being among its like."""
+FARTHEST_FAINT = 12
+"""Largest distance to other than faint matter that is told apart."""
 
-FIRST_FAINT, FIRST_OTHER = 32, 96
-"""Bytes from which on matter is faint, and from which on it is not."""
+PER_FAINT = 24
+"""Of the third byte, for a voxel that a ray may go on in faint matter."""
 
-_FAINT_STEP = float(np.sqrt(FAINT / DENSEST)) / (FIRST_OTHER - 1 - FIRST_FAINT)
-_STEP = 1.0 / (255 - FIRST_OTHER)
-
-DECLARATIONS = f"""const float STRIDE_DENSEST = {DENSEST!r}; // extinction of a reference length at the greatest byte
-const float STRIDE_FAINT = {(FIRST_FAINT - 0.5) / 255!r};  // faint matter from there, other from the next
-const float STRIDE_OTHER = {(FIRST_OTHER - 0.5) / 255!r};
-const float STRIDE_OF_FAINT = {float(STRIDE)!r};           // voxels
-const vec2 STRIDE_FAINT_CODING = vec2({255 * _FAINT_STEP!r}, {FIRST_FAINT * _FAINT_STEP!r});
-const vec2 STRIDE_CODING = vec2({255 * _STEP!r}, {FIRST_OTHER * _STEP!r});"""
+DECLARATIONS = f"""uniform sampler3D shell_coded;
+const float CODED_FIRST = {float(FIRST)!r};     // as in renderer/shells/texture/strides.py
+const float CODED_PER_VOXEL = {float(PER_VOXEL)!r};
+const float CODED_FAINT = {float(PER_FAINT)!r};"""
 
 
 def strides_bake(texture: Bake, wrap: str) -> Bake:
     """The precomputation of distances in a baked texture."""
-    return Bake("strides", bake_strides, {"wrap": wrap}, (texture,), seconds=1)
+    return Bake("strides", bake_strides, {"wrap": wrap}, (texture,), version=2, seconds=1)
 
 
 def bake_strides(
@@ -54,8 +52,8 @@ def bake_strides(
         inputs: `texture`.
 
     Returns:
-        `empty` (K, J, I) uint8, Chebyshev distance to the nearest matter, 0 in it; `faint` (K, J, I) bool, whether all
-        voxels nearer than `STRIDE` are faint.
+        `empty` (K, J, I) uint8, Chebyshev distance to the nearest matter, 0 in it; `faint` (K, J, I) uint8, that to
+        other than faint matter, 0 in it.
     """
     progress(0.1, "finding what is empty")
     texture, wrap = inputs["texture"], arguments["wrap"]
@@ -65,24 +63,31 @@ def bake_strides(
     # Where the reference length is no voxel's height, how faint a voxel is depends on the shell.
     known = float(texture["reference_length"]) == 0
     progress(0.6, "finding what is faint")
-    faint = known & (distances(~thin | (opacity == 0), wrap) >= STRIDE)
-    return {"empty": np.minimum(empty, FARTHEST), "faint": np.broadcast_to(faint, opacity.shape).copy()}
+    faint = np.minimum(distances(~thin | (opacity == 0), wrap), FARTHEST_FAINT) if known else np.zeros_like(empty)
+    return {"empty": np.minimum(empty, FARTHEST), "faint": faint}
 
 
 def coded(strides: Arrays, levels: Sequence[np.ndarray]) -> list[np.ndarray]:
-    """Bytes (K, J, I) of each level.
+    """Bytes (K, J, I, 2) of each level, or (K, J, I, 4) where some matter is faint.
 
     Args:
-        strides: as of `bake_strides`. levels: (K, J, I, 4) of each, whose last is the extinction of a reference length.
+        strides: as of `bake_strides`. levels: (K, J, I) of each, 0 to 1: what a shader interpolates for the opacity.
     """
     empty, faint, found = np.asarray(strides["empty"]), np.asarray(strides["faint"]), []
+    channels = 4 if faint.any() else 2
     for level in levels:
-        while empty.shape != level.shape[:3]:
-            empty, faint = (_blocks(empty) + np.uint8(1)) // np.uint8(2), _blocks(faint)
-        out = np.empty(level.shape[:3], np.uint8)
-        _coded(np.ascontiguousarray(level[..., 3]), np.ascontiguousarray(empty), np.ascontiguousarray(faint), out)
+        while empty.shape != level.shape:
+            empty, faint = _halved(empty), _halved(faint)
+        out = np.zeros((*level.shape, channels), np.uint8)
+        _coded(np.ascontiguousarray(level, np.float32), np.ascontiguousarray(empty), np.ascontiguousarray(faint), out)
         found.append(out)
     return found
+
+
+def _halved(distance: np.ndarray) -> np.ndarray:
+    """Distances in voxels twice as wide."""
+    halves: np.ndarray = (_blocks(distance) + (_blocks(distance) > 0)) // np.uint8(2)
+    return halves
 
 
 def _blocks(array: np.ndarray) -> np.ndarray:
@@ -96,24 +101,18 @@ def _blocks(array: np.ndarray) -> np.ndarray:
 
 
 @numba.njit(cache=True, nogil=True)
-def _coded(extinction, empty, faint, out):
-    layers, rows, columns = extinction.shape
-    n = 0
+def _coded(number, empty, faint, out):
+    layers, rows, columns = number.shape
+    nearest = FIRST // PER_VOXEL
     for k in range(layers):
         for j in range(rows):
             for i in range(columns):
-                # As in `extinction.bytes_of`: up or down by a chance that is the same each time, right in the mean.
-                turn = np.uint32(np.uint32(n) * np.uint32(2654435769)) >> np.uint32(8)
-                chance = np.float32(turn) * np.float32(2.0**-24)
-                n += 1
-                there = extinction[k, j, i]
+                there = number[k, j, i]
                 if there <= 0:
-                    out[k, j, i] = max(empty[k, j, i], 1)
+                    out[k, j, i, 0] = FIRST - PER_VOXEL * (min(max(empty[k, j, i], 1), nearest) - 1)
                     continue
-                thin = faint[k, j, i] and there < np.float32(FAINT)
-                step = np.float32(_FAINT_STEP) if thin else np.float32(_STEP)
-                first, last = (FIRST_FAINT, FIRST_OTHER - 1) if thin else (FIRST_OTHER, 255)
-                low = np.floor(np.sqrt(min(there / np.float32(DENSEST), np.float32(1))) / step)
-                # The mean of the squares of two neighbours, not of their roots, is to be right.
-                share = (there / np.float32(DENSEST) / (step * step) - low * low) / (2 * low + 1)
-                out[k, j, i] = min(first + int(low) + (1 if chance < share else 0), last)
+                parts = int(min(there, np.float32(1)) * np.float32((255 - FIRST) * 255) + np.float32(0.5))
+                out[k, j, i, 0] = FIRST + parts // 255
+                out[k, j, i, 1] = parts % 255
+                if faint[k, j, i] > 2:
+                    out[k, j, i, 2] = PER_FAINT * (faint[k, j, i] - 2)

@@ -29,7 +29,7 @@ bool order_walk(Ray ray, int tet, float enter, inout vec4 sum) {
     } while (tet >= 0 && steps < ORDER_STEPS && sum.a < OPAQUE);
 #if BASE_OPAQUE == 1
     if (tet == BEYOND_BASE) {
-        sum += (1.0 - sum.a) * vec4(base_radiance(ray, last, face, enter), 1.0);
+        base_met(ray, last, face, enter, sum);
         return true;
     }
 #endif

@@ -1,4 +1,4 @@
-"""A byte a voxel: right in the mean, and never farther than to the nearest other matter."""
+"""Few bytes a voxel: as right as they can be, and never farther than to the nearest other matter."""
 
 from __future__ import annotations
 
@@ -18,45 +18,34 @@ def baked(opacity: np.ndarray, reference_length: float = 0.0) -> dict[str, np.nd
     return strides.bake_strides({"wrap": "repeat"}, {"texture": made}, lambda share, words: None)
 
 
-def coded(extinction: np.ndarray) -> np.ndarray:
-    found = baked(-np.expm1(-extinction))
-    return strides.coded(found, [np.repeat(extinction[..., None], 4, axis=-1)])[0].astype(float)
+def coded(opacity: np.ndarray) -> np.ndarray:
+    return strides.coded(baked(opacity), [opacity])[0].astype(int)
 
 
-def told(code: np.ndarray) -> np.ndarray:
-    """Extinction of a reference length, as the shader reads it."""
-    faint = np.sqrt(strides.FAINT / strides.DENSEST) * (code - strides.FIRST_FAINT) / (
-        strides.FIRST_OTHER - 1 - strides.FIRST_FAINT)  # fmt: skip
-    other = (code - strides.FIRST_OTHER) / (255 - strides.FIRST_OTHER)
-    root = np.where(code < strides.FIRST_FAINT, 0.0, np.where(code < strides.FIRST_OTHER, faint, other))
-    return root**2 * strides.DENSEST
-
-
-@pytest.mark.parametrize("extinction", [0.002, 0.03, 0.07, 1.234, 8.0])
-def test_bytes_are_right_in_the_mean(extinction: float) -> None:
-    code = coded(np.full(SHAPE, extinction, np.float32))
-    assert told(code).mean() == pytest.approx(extinction, rel=0.004)
-    assert np.ptp(code) <= 1
-    assert ((code < strides.FIRST_OTHER) == (extinction < strides.FAINT)).all()
+@pytest.mark.parametrize("opacity", [0.0002, 0.03, 0.4, 0.9998, 1.0])
+def test_two_bytes_hold_an_opacity(opacity: float) -> None:
+    code = coded(np.full(SHAPE, opacity, np.float32))
+    found = (code[..., 0] - strides.FIRST + code[..., 1] / 255) / (255 - strides.FIRST)
+    np.testing.assert_allclose(found, opacity, atol=1.3e-5)
 
 
 def test_nothing_tells_how_far_matter_is() -> None:
-    extinction = np.zeros(SHAPE, np.float32)
-    extinction[3, 5, 20] = extinction[12, 20, 2] = 2.0
-    code = coded(extinction)
-    np.testing.assert_array_equal(code[extinction == 0], distances(extinction > 0, "repeat")[extinction == 0])
-    assert (code[extinction > 0] >= strides.FIRST_OTHER).all()
+    opacity = np.zeros(SHAPE, np.float32)
+    opacity[3, 5, 20] = opacity[12, 20, 2] = 0.8
+    code, away = coded(opacity), distances(opacity > 0, "repeat")
+    nothing = opacity == 0
+    told = 1 + (strides.FIRST - code[..., 0]) / strides.PER_VOXEL
+    np.testing.assert_array_equal(told[nothing], away[nothing])
+    assert (code[~nothing, 0] >= strides.FIRST).all()
+    assert not code[nothing, 1].any()
 
 
-def test_faint_matter_keeps_away_from_all_else() -> None:
-    extinction = np.full(SHAPE, 0.02, np.float32)
-    extinction[8, 12, 12] = 3.0
-    code = coded(extinction)
-    far = distances(extinction > 1, "repeat") >= strides.STRIDE
-    assert far.any()
-    assert not far.all()
-    np.testing.assert_array_equal(code < strides.FIRST_OTHER, far)
-    assert not baked(-np.expm1(-extinction), reference_length=0.1)["faint"].any(), "a voxel's own depth is unknown"
+def test_faint_matter_tells_how_far_all_else_is() -> None:
+    opacity = np.full(SHAPE, 0.02, np.float32)
+    opacity[8, 12, 12] = 0.9
+    away = np.minimum(distances(opacity > 0.5, "repeat"), strides.FARTHEST_FAINT).astype(int)
+    np.testing.assert_array_equal(coded(opacity)[..., 2], strides.PER_FAINT * np.maximum(away - 2, 0))
+    assert not baked(opacity, reference_length=0.1)["faint"].any(), "a voxel's own depth is unknown"
 
 
 def test_coarser_levels_keep_their_distance() -> None:
@@ -65,8 +54,9 @@ def test_coarser_levels_keep_their_distance() -> None:
     matter[tuple(rng.integers(0, side, 6) for side in SHAPE)] = 1.0
     levels = [level.matter for level in mean_pyramid(Extinct(matter, matter))]
     assert len(levels) > 2
-    for level, code in zip(levels, strides.coded(baked(-np.expm1(-matter[..., 3])), levels), strict=True):
-        nothing = level[..., 3] == 0
-        assert (code[~nothing] >= strides.FIRST_FAINT).all()
-        assert (code[nothing] >= 1).all()
-        assert (code[nothing] <= np.maximum(distances(~nothing, "repeat"), 1)[nothing]).all()
+    numbers = [level[..., 3] for level in levels]
+    for number, code in zip(numbers, strides.coded(baked(-np.expm1(-matter[..., 3])), numbers), strict=True):
+        nothing = number == 0
+        told = 1 + (strides.FIRST - code[..., 0].astype(int)) / strides.PER_VOXEL
+        assert (code[~nothing, 0] >= strides.FIRST).all()
+        assert (told[nothing] <= np.maximum(distances(~nothing, "repeat"), 1)[nothing]).all()
