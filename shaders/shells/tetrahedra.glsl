@@ -36,7 +36,7 @@ struct Exit {
 };
 
 vec4 tet_texel(int tet, int item) {
-    return texelFetch(shell_tets, ivec2(((tet & (TET_ROW - 1)) << 3) + item, tet >> 9), 0);
+    return texelFetch(shell_tets, ivec2((tet % TET_ROW) * 8 + item, tet / TET_ROW), 0);
 }
 
 // Distance at which a ray meets a plane.

@@ -81,7 +81,7 @@ def test_opacity_thins_all_matter_alike(draw: Draw) -> None:
     thick, thin = even(0.3), {"course": {"keys": [{"opacity": 0.5}]}}
     passed = 1 - draw({}, thick)[..., 3]
     np.testing.assert_allclose(1 - draw(thin, thick)[..., 3], np.sqrt(passed), rtol=1e-4)
-    for sampling in ({"kind": "stochastic", "jitter": 0.0}, {"kind": "dda"}):
+    for sampling in ({"kind": "quantiles", "jitter": 0.0}, {"kind": "dda"}):
         np.testing.assert_allclose(
             1 - draw({**thin, "sampling": sampling}, thick)[..., 3], np.sqrt(passed), rtol=0.02, err_msg=str(sampling)
         )
