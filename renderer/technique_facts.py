@@ -26,14 +26,23 @@ Tell = Callable[[float, str], None]
 Lines = Sequence[Mapping[str, Any]]
 
 
-def measure(session: Session, scene: str, folder: Path, size: int, frames: int, tell: Tell | None = None) -> Path:
-    """Measure every technique of every slot at each preset without a group against the full reference, and its time.
+def measure(
+    session: Session,
+    scene: str,
+    folder: Path,
+    size: int,
+    frames: int,
+    tell: Tell | None = None,
+    presets: Sequence[str] = (),
+) -> Path:
+    """Measure every technique of every slot at each preset against the full reference, and its time.
 
     Args:
         session: draws, bakes and caches.
         folder: gets `results.jsonl`, which a later call goes on with, and `facts.json`.
         size: side of the pictures that are judged, pixels. frames: timed frames of each.
         tell: told the share done.
+        presets: by name; none stands for all without a group.
 
     Returns:
         Path of `facts.json`.
@@ -41,7 +50,7 @@ def measure(session: Session, scene: str, folder: Path, size: int, frames: int, 
     Raises:
         InputError: a size that is not studied.
     """
-    errors, times, unit = measured(session, scene, folder, size, frames, tell)
+    errors, times, unit = measured(session, scene, folder, size, frames, tell, presets)
     return keep(folder, facts(scene, errors, times, size, unit))
 
 

@@ -40,6 +40,7 @@ def add(commands: Any) -> None:
     command.set_defaults(run=stability)
     command = commands.add_parser("facts", help="cost and error of every technique alone, as the page tells them")
     command.add_argument("scene", metavar="SCENE")
+    command.add_argument("--presets", metavar="NAME,..", default="all", help="all, or names (default %(default)s)")
     command.add_argument("--size", type=int, default=128, help="side of the pictures, px (default %(default)s)")
     command.add_argument("--frames", type=int, default=30, help="timed frames of each (default %(default)s)")
     command.add_argument("--docs", action="store_true", help="copy what was measured into docs/study")
@@ -62,7 +63,8 @@ def facts(given: argparse.Namespace) -> int:
     tell = Teller(given.scene)
     try:
         with Session() as session:
-            path = technique_facts.measure(session, given.scene, folder, given.size, given.frames, tell)
+            presets = presets_of(given.presets, session.describe(given.scene)["presets"])
+            path = technique_facts.measure(session, given.scene, folder, given.size, given.frames, tell, presets)
     finally:
         tell.bar.close()
     if given.docs:
