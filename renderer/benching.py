@@ -59,9 +59,17 @@ class Stopwatch:
         self._size = size
         self._view = session.view()
         self._turn = 0
+        self._last: Case | None = None
 
     def frame_ms(self, case: Case) -> float:
         """Milliseconds of the next frame of a case; what moves in it (`moves`) has moved on by a step."""
+        # What a case keeps from frame to frame is its own: another's frame before it would be charged to it.
+        if case != self._last:
+            self._next(case)
+        self._last = case
+        return self._next(case)
+
+    def _next(self, case: Case) -> float:
         # No two frames share a turn, whatever their case: one would be spared what the other has traced.
         self._turn += 1
         moves = str(case.parameters.get("moves", MOVES[0]))

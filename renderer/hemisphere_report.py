@@ -7,12 +7,10 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from matplotlib import rc_context
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from renderer import hemisphere_study as study
-from renderer.study.charts import COLOURS, MARKERS
+from renderer.study.charts import COLOURS, MARKERS, save
 
 Lines = list[dict[str, Any]]
 FILES = ("table.md", "results.jsonl", "codes.png", "codes.svg", "between.png", "between.svg")
@@ -47,11 +45,7 @@ def run(folder: Path, mesh: Path | None, points: int, tell: Callable[[float, str
     text = table(parts)
     (folder / "table.md").write_text(text, encoding="utf-8")
     for name, figure in (("codes", codes_chart(parts["codes"])), ("between", between_chart(parts["between"]))):
-        FigureCanvasAgg(figure)
-        figure.savefig(folder / f"{name}.png", dpi=90, metadata={"Software": None})
-        # The same results give the same file.
-        with rc_context({"svg.hashsalt": name}):
-            figure.savefig(folder / f"{name}.svg", metadata={"Date": None})
+        save(figure, folder, name)
     return text
 
 

@@ -14,8 +14,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from matplotlib import rc_context
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from renderer.core.baking import gather
@@ -25,7 +23,7 @@ from renderer.shells.bakes import shell_bake, surface_bake
 from renderer.shells.course import Key, key_at
 from renderer.shells.shell import Shell
 from renderer.shells.state import ShellsState
-from renderer.study.charts import COLOURS, MARKERS
+from renderer.study.charts import COLOURS, MARKERS, save
 from renderer.study.sweep import provenance
 
 if TYPE_CHECKING:
@@ -227,10 +225,5 @@ def write(found: Mapping[str, Any], folder: Path) -> str:
     text = table(found)
     (folder / "table.md").write_text(text, encoding="utf-8")
     (folder / "results.json").write_text(json.dumps(found, indent=1), encoding="utf-8")
-    figure = chart(found)
-    FigureCanvasAgg(figure)
-    figure.savefig(folder / "keys.png", dpi=90, metadata={"Software": None})
-    # The same results give the same file.
-    with rc_context({"svg.hashsalt": "keys"}):
-        figure.savefig(folder / "keys.svg", metadata={"Date": None})
+    save(chart(found), folder, "keys")
     return text

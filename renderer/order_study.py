@@ -12,14 +12,12 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from matplotlib import rc_context
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from renderer.core.registry import phenomenon, techniques
 from renderer.shells.order_bench import sort_times
 from renderer.shells.order_errors import STEP, order_error
-from renderer.study.charts import COLOURS, MARKERS
+from renderer.study.charts import COLOURS, MARKERS, save
 from renderer.study.sweep import provenance
 
 if TYPE_CHECKING:
@@ -140,11 +138,7 @@ def write(found: Mapping[str, Any], folder: Path) -> str:
     (folder / "table.md").write_text(text, encoding="utf-8")
     (folder / "results.json").write_text(json.dumps(found, indent=1), encoding="utf-8")
     for name, figure in (("orders", orders_chart(found)), ("sorting", sorting_chart(found))):
-        FigureCanvasAgg(figure)
-        figure.savefig(folder / f"{name}.png", dpi=90, metadata={"Software": None})
-        # The same results give the same file.
-        with rc_context({"svg.hashsalt": name}):
-            figure.savefig(folder / f"{name}.svg", metadata={"Date": None})
+        save(figure, folder, name)
     return text
 
 

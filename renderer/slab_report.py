@@ -8,15 +8,13 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from matplotlib import rc_context
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 
 from renderer import slab_study as study
 from renderer.core.cache import Cache
 from renderer.core.registry import techniques
-from renderer.study.charts import COLOURS, plain_axes
+from renderer.study.charts import COLOURS, plain_axes, save
 
 Lines = list[dict[str, Any]]
 FILES = ("table.md", "errors.png", "errors.svg", "orders.png", "orders.svg", "results.jsonl")
@@ -64,11 +62,7 @@ def run(folder: Path, photons: int, tell: Callable[[float, str], None]) -> str:
     text = table(parts, photons)
     (folder / "table.md").write_text(text, encoding="utf-8")
     for name, figure in (("errors", errors_chart(parts["errors"])), ("orders", orders_chart(parts["orders"]))):
-        FigureCanvasAgg(figure)
-        figure.savefig(folder / f"{name}.png", dpi=90, metadata={"Software": None})
-        # The same results give the same file.
-        with rc_context({"svg.hashsalt": name}):
-            figure.savefig(folder / f"{name}.svg", metadata={"Date": None})
+        save(figure, folder, name)
     return text
 
 

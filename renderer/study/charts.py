@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
@@ -263,3 +264,11 @@ def write(
     figure.savefig(folder / "speed_accuracy.png", dpi=120, metadata={"Software": None})
     figure.savefig(folder / "speed_accuracy.svg", metadata={"Date": None})
     return points
+
+
+def save(figure: Figure, folder: Path, name: str) -> None:
+    """Write a chart as PNG and as SVG; the same results give the same files."""
+    FigureCanvasAgg(figure)
+    figure.savefig(folder / f"{name}.png", dpi=90, metadata={"Software": None})
+    with rc_context({"svg.hashsalt": name}):
+        figure.savefig(folder / f"{name}.svg", metadata={"Date": None})
