@@ -7,7 +7,7 @@ directions make. What is drawn of them is the same to the last bit; points that 
 from __future__ import annotations
 
 from collections import OrderedDict
-from collections.abc import Callable, Hashable
+from collections.abc import Callable, Hashable, Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -32,8 +32,11 @@ if TYPE_CHECKING:
     from renderer.session import Session
     from renderer.world.state import SceneState
 
-KEPT, FACES_KEPT = 12, 24
+KEPT, FACES_KEPT = 40, 24
 """Of what follows from points, and of what faces see from as many sides as a study has, in memory."""
+
+WORTH_KEEPING = 10.0
+"""Expected seconds from which on what follows from points is kept on disk, too."""
 
 
 class Partial:
@@ -46,13 +49,14 @@ class Partial:
     def __init__(self, session: Session) -> None:
         self.session = session
         self._phenomenon = phenomenon("directional")
-        self._renderer: Any = session.gl.call(self._phenomenon.open)
+        self.renderer: Any = session.gl.call(self._phenomenon.open)
         self._kept: OrderedDict[Hashable, Arrays] = OrderedDict()
         self._layers: OrderedDict[Hashable, Arrays] = OrderedDict()
+        self._caster: tuple[str, Any] = "", None
 
     def close(self) -> None:
         """Free what the GPU holds."""
-        self.session.gl.call(lambda gl: self._renderer.release())
+        self.session.gl.call(lambda gl: self.renderer.release())
 
     def drawn(self, state: SceneState, size: int, positions: int = POSITIONS) -> Drawn:
         """The converged picture of a state, without a background: as `renderer.comparing.converged`.
@@ -80,10 +84,9 @@ class Partial:
                 inputs = {source.name: of(source) for source in bake.inputs}
                 others = [key for name, key in sorted((n, entry.key) for n, entry in inputs.items())
                           if name != "visibility"]  # fmt: skip
-                key = key_of("partial", bake.function.__qualname__, bake.arguments, others)
+                key = key_of("partial", bake.function.__qualname__, bake.version, bake.arguments, others)
                 arrays = {name: entry.arrays for name, entry in inputs.items()}
-                made = self._keep(key, lambda: bake.function(bake.arguments, arrays, lambda share, words: None))
-                found[bake.name] = BakedArrays(key, made)
+                found[bake.name] = BakedArrays(key, self._keep(key, lambda: self._made(bake, key, arrays)))
             else:
                 key = bake_key(bake)
                 found[bake.name] = BakedArrays(key, self._keep(key, lambda: bake_now(bake, self.session.cache)))
@@ -99,7 +102,23 @@ class Partial:
     def _faces(self, state: Any, subject: BakedArrays, cloud: BakedArrays) -> BakedArrays:
         camera, faces = state.camera, state.visibility
         key = key_of("partial faces", cloud.key, camera.model_dump(mode="json"), faces.model_dump(mode="json"))
-        return BakedArrays(key, self._keep(key, lambda: layers_of(camera, faces, subject.arrays, cloud.arrays), True))
+
+        def make() -> Arrays:
+            if cloud.key != self._caster[0]:
+                self._caster = cloud.key, Caster(subject.arrays, cloud.arrays)
+            return layers_of(camera, faces, self._caster[1], len(cloud.arrays["position"]))
+
+        return BakedArrays(key, self._keep(key, make, True))
+
+    def _made(self, bake: Bake, key: str, inputs: Mapping[str, Arrays]) -> Arrays:
+        """A bake's arrays, which are kept on disk where they take long."""
+        kept = self.session.cache.get(key) if bake.seconds > WORTH_KEEPING else None
+        if kept is not None:
+            return kept
+        arrays = bake.function(bake.arguments, dict(inputs), lambda share, words: None)
+        if bake.seconds > WORTH_KEEPING:
+            self.session.cache.put(key, arrays)
+        return arrays
 
     def _keep(self, key: Hashable, make: Callable[[], Arrays], layers: bool = False) -> Arrays:
         store, most = (self._layers, FACES_KEPT) if layers else (self._kept, KEPT)
@@ -114,20 +133,20 @@ class Partial:
         target, total = Target(gl, size, size), np.zeros((size, size, 4))
         try:
             for sample in range(positions):
-                prepared = self._renderer.prepare(state, baked, (size, size), offset(sample), sample)
+                prepared = self.renderer.prepare(state, baked, (size, size), offset(sample), sample)
                 target.use()
-                self._renderer.draw(prepared)
+                self.renderer.draw(prepared)
                 total += target.read()
             return total / positions
         finally:
             target.release()
 
 
-def layers_of(camera: Any, faces: Any, subject: Arrays, cloud: Arrays) -> Arrays:
+def layers_of(camera: Any, faces: Any, caster: Caster, count: int) -> Arrays:
     """What the faces see in the directions that a camera needs, as `renderer.directional.visibility` bakes all of them;
-    the others are empty, and every point of the cloud has its own number."""
-    box, layout, texels = np.asarray(subject["box"]), hemisphere_of(int(faces.directions)), faces.texels
-    caster, seen = Caster(subject, cloud), faces_seen(camera, box)
+    the others are empty, and every one of the cloud's points, `count` of them, has its own number."""
+    box, layout, texels = caster.box, hemisphere_of(int(faces.directions)), faces.texels
+    seen = faces_seen(camera, box)
     empty = packed(np.full(texels * texels, NONE, np.uint32))
     data, ends = {}, []
     for face in range(6):
@@ -137,7 +156,6 @@ def layers_of(camera: Any, faces: Any, subject: Arrays, cloud: Arrays) -> Arrays
         layers = [packed(caster.points(origins, -way)) if n in needed else empty for n, way in enumerate(ways)]
         data[f"data_{face}"] = np.frombuffer(b"".join(layers), np.uint8)
         ends.append(np.cumsum([len(layer) for layer in layers]))
-    count = len(cloud["position"])
     return {
         "used": np.arange(count, dtype=np.int32),
         "number": np.arange(count, dtype=np.uint32),

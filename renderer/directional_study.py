@@ -1,14 +1,17 @@
 """The directional textures held to their reference from many sides in many suns, and their silhouettes apart.
 
-Every result is a line that a later call finds again, so that a study that was stopped goes on where it was. Rounds go
-before settings: whenever it stops, every setting has been seen from all sides, if not in every sun.
+Every result is a line that a later call finds again, so that a study that was stopped goes on where it was. Views go
+before settings: whenever it stops, every setting has been seen from the same sides, in all suns. What a view's pixels
+show and what a sun makes of the points are found once, whatever is combined with them (`renderer.directional_weights`).
 """
 
 from __future__ import annotations
 
+import itertools
 import math
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections import OrderedDict
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -17,12 +20,13 @@ import numpy as np
 
 import renderer
 from renderer import truth
-from renderer.comparing import reference
+from renderer.comparing import displayed, reference
 from renderer.core.baking import bake_key
 from renderer.core.cache import key_of
 from renderer.core.registry import SHADERS, phenomenon
 from renderer.directional_partial import Partial
 from renderer.directional_settings import BASE, Setting
+from renderer.directional_weights import Weighed
 from renderer.reference.directional_edges import silhouettes
 from renderer.reference.directional_mesh import Subject
 from renderer.reference.directional_world import DirectionalWorld
@@ -84,15 +88,16 @@ def cameras(box: np.ndarray) -> tuple[dict[str, Any], ...]:
     )
 
 
+RIGHT_KEPT = 16
+"""References in memory."""
+
 STRIDE = 7
 """From one view to the next in the order in which they are taken: the first few already look from high and low."""
 
 
-def pairs(views: int, suns: int) -> Iterator[list[tuple[int, str]]]:
-    """Rounds of views and suns: each has every view once, and all of them every pair."""
-    names = tuple(SUNS)[:suns]
-    for turn in range(suns):
-        yield [(STRIDE * view % VIEWS, names[(view + turn) % suns]) for view in range(views)]
+def sides(views: int) -> list[int]:
+    """Numbers of so many views, in the order in which they are taken."""
+    return [STRIDE * number % VIEWS for number in range(views)]
 
 
 @dataclass
@@ -120,7 +125,9 @@ class Stage:
         self.code = code_of(SHADERS / SCENE, SHADERS / "lib", here / SCENE, here / "study")
         self.partial = Partial(self.session)
         self.known = {line["key"]: line for line in read(self.results)}
+        self.weighed = Weighed(self.partial, SIZE, POSITIONS)
         self._edges: dict[str, np.ndarray] = {}
+        self._right: OrderedDict[str, tuple[Drawn, np.ndarray]] = OrderedDict()
 
     @property
     def longest(self) -> float:
@@ -162,21 +169,37 @@ class Stage:
         return self.known[key]
 
     def swept(self, part: str, settings: Sequence[Setting], tell: Tell) -> Lines:
-        """Lines of settings over all views and suns."""
+        """Lines of settings over all views and suns, those that share a code of shadows behind each other."""
         found: Lines = []
-        turns = list(pairs(self.views, self.suns))
-        total = len(turns) * len(settings) * self.views
-        for turn in turns:
-            for setting in settings:
-                for view, sun in turn:
-                    tell(len(found) / total, f"{setting.texels} texels, {setting.directions} directions, "
-                         f"{setting.selection}, {setting.code}: view {view + 1}")
-                    found.append(self.measured(part, setting, view, sun, SIZE, self._picture))
+        ordered = sorted(settings, key=lambda each: str(_shading(each)))
+        suns = tuple(SUNS)[: self.suns]
+        total = self.views * len(ordered) * len(suns)
+        for view in sides(self.views):
+            for code, group in itertools.groupby(ordered, key=_shading):
+                some = list(group)
+                for sun in suns:
+                    tell(len(found) / total, f"{code.code}, {code.shadow_directions} directions: view {view}, {sun}")
+                    found += [self.measured(part, setting, view, sun, SIZE, self._picture) for setting in some]
         return found
 
+    def right(self, state: SceneState) -> tuple[Drawn, np.ndarray]:
+        """The reference of a state, and which of its pixels are away from silhouettes."""
+        bake = truth.truth_bake(state, SIZE, SIZE, positions=POSITIONS)
+        if (key := bake_key(bake)) not in self._right:
+            found = truth.truth_of(self.session.compute(bake))
+            shown = reference(found, state.view, exposure_of(state, self.partial.baked(state)))
+            self._right[key] = shown, self.away(state, shown.linear[..., 3])
+            while len(self._right) > RIGHT_KEPT:
+                self._right.popitem(last=False)
+        return self._right[key]
+
+    def picture(self, state: SceneState) -> Drawn:
+        """The converged picture of a state, without a background."""
+        linear = self.weighed.linear(state)
+        return Drawn(linear, displayed(linear, state.view, exposure_of(state, self.partial.baked(state))))
+
     def _picture(self, partial: Partial, state: SceneState, size: int) -> dict[str, Any]:
-        picture, right = drawn(partial, state, size, POSITIONS)
-        mask = self.away(state, right.linear[..., 3])
+        picture, (right, mask) = self.picture(state), self.right(state)
         whole = compare(picture, right)
         return {
             **{name: whole[name] for name in ("relative_rmse", "flip_mean", "flip_p95", "reference_standard_error")},
@@ -190,7 +213,7 @@ class Stage:
         for number, setting in enumerate(settings):
             for view in range(self.views):
                 tell((number * self.views + view) / len(settings) / self.views, f"outline {view + 1} of {setting}")
-                sun, side = next(iter(SUNS)), STRIDE * view % VIEWS
+                sun, side = next(iter(SUNS)), sides(self.views)[view]
                 found.append(self.measured("silhouette", setting, side, sun, size, _outline, truth.POSITIONS))
         return found
 
@@ -203,6 +226,11 @@ def drawn(partial: Partial, state: SceneState, size: int, positions: int) -> tup
     found = truth.truth_of(partial.session.compute(truth.truth_bake(state, size, size, positions=positions)))
     picture = partial.drawn(state, size, positions)
     return picture, reference(found, state.view, exposure_of(state, partial.baked(state)))
+
+
+def _shading(setting: Setting) -> Setting:
+    """What of a setting lights points, the rest left out."""
+    return replace(setting, texels=0, directions=0, selection="")
 
 
 def within(picture: np.ndarray, right: np.ndarray, mask: np.ndarray) -> dict[str, float | None]:
@@ -230,14 +258,14 @@ def finer(stage: Stage, tell: Tell) -> Lines:
         Lines with FLIP between the two (`between_mean`, `between_p95`), their relative RMSE `between`, and `coarse` and
         `fine`, either's relative RMSE to the reference away from silhouettes.
     """
-    found = []
+    found: Lines = []
     fine, coarse = BASE, replace(BASE, shadow_directions=129)
-    turns = list(pairs(stage.views, stage.suns))
+    suns = tuple(SUNS)[: stage.suns]
 
     def measure(partial: Partial, state: SceneState, size: int) -> dict[str, Any]:
         other: Any = partial.session.state(SCENE, document={**state.model_dump(mode="json"), **_shadows(coarse)})
-        (few, right), (many, _) = (drawn(partial, each, size, POSITIONS) for each in (other, state))
-        mask = stage.away(state, right.linear[..., 3])
+        few, many = stage.picture(other), stage.picture(state)
+        right, mask = stage.right(state)
         seen = flip(few.rgb8, many.rgb8)
         level = float(right.linear[..., :3].mean())
         apart_ = float(np.sqrt(np.mean((few.linear[..., :3] - many.linear[..., :3]) ** 2))) / level
@@ -247,10 +275,9 @@ def finer(stage: Stage, tell: Tell) -> Lines:
             "fine": within(many.linear, right.linear, mask)["away"],
         }  # fmt: skip
 
-    for number, turn in enumerate(turns):
-        for view, sun in turn:
-            tell((number * stage.views + view) / len(turns) / stage.views, f"129 against 513, view {view + 1}")
-            found.append(stage.measured("finer", fine, view, sun, SIZE, measure))
+    for view, sun in itertools.product(sides(stage.views), suns):
+        tell(len(found) / len(suns) / stage.views, f"129 against 513, view {view}, {sun}")
+        found.append(stage.measured("finer", fine, view, sun, SIZE, measure))
     return found
 
 

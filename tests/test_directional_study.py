@@ -15,6 +15,7 @@ from renderer import directional_settings as settings
 from renderer import directional_study as study
 from renderer.core.baking import bake_now
 from renderer.directional.bakes import bakes
+from renderer.directional.casting import Caster
 from renderer.directional.subject import knot
 from renderer.directional_partial import Partial, layers_of
 from renderer.session import Session
@@ -57,11 +58,9 @@ def test_views_look_at_the_box_from_all_sides() -> None:
                and camera["target"] == [0, 0, 1.5] for camera in made)  # fmt: skip
 
 
-def test_rounds_have_every_view_once_and_every_pair_in_all() -> None:
-    rounds = list(study.pairs(study.VIEWS, study.SUNS_USED))
-    assert all(sorted(view for view, _ in each) == list(range(study.VIEWS)) for each in rounds)
-    assert len({pair for each in rounds for pair in each}) == study.VIEWS * study.SUNS_USED
-    assert [len(each) for each in study.pairs(5, 2)] == [5, 5]
+def test_every_view_is_taken_once() -> None:
+    assert sorted(study.sides(study.VIEWS)) == list(range(study.VIEWS))
+    assert study.sides(3) == [0, 7, 14]
 
 
 def test_a_setting_is_a_patch_of_the_document(session: Session) -> None:
@@ -108,10 +107,27 @@ def test_a_part_of_the_faces_draws_what_all_of_them_do(stage: study.Stage, sessi
     np.testing.assert_array_equal(one, two)
 
 
+@pytest.mark.parametrize("selection", settings.SELECTIONS)
+def test_a_sum_over_points_is_the_picture(stage: study.Stage, selection: str) -> None:
+    """Weights of a view and light of points give what drawing gives, and another sun needs no other weights."""
+    for sun in ("az180_el62", "az120_el20"):
+        state: Any = stage.state(replace(SMALL, selection=selection), 3, sun)
+        drawn = stage.partial.drawn(state, 24, 2).linear
+        found = stage.weighed.linear(state)
+        assert drawn[..., 3].max() > 0.99
+        np.testing.assert_allclose(found, drawn, rtol=0, atol=3e-5 * drawn.max())
+        shares = stage.weighed.weights(state)
+        shares.data[::7] *= 0.9
+        assert np.abs(stage.weighed.linear(state) - drawn).max() > 1e-3 * drawn.max()
+        shares.data[::7] /= 0.9
+    assert (len(stage.weighed._weights), len(stage.weighed._lights)) == (1, 2)
+
+
 def test_layers_that_no_pixel_needs_are_empty(stage: study.Stage, session: Session) -> None:
     state: Any = stage.state(replace(SMALL, directions=129), 3, "az180_el62")
     made = {bake.name: bake_now(bake, session.cache) for bake in bakes(state) if bake.name in ("subject", "cloud")}
-    found = layers_of(state.camera, state.visibility, made["subject"], made["cloud"])
+    caster = Caster(made["subject"], made["cloud"])
+    found = layers_of(state.camera, state.visibility, caster, len(made["cloud"]["position"]))
     sizes = np.diff(found["ends"], axis=1, prepend=0)
     eye = pose(state.camera).eye - found["box"].mean(axis=0)
     behind = [face for face in range(6) if (eye[face // 2] > 0) != bool(face % 2)]
@@ -124,17 +140,17 @@ def test_a_study_goes_on_where_it_was_and_leaves_its_table(
 ) -> None:
     said: list[str] = []
     lines = stage.swept("chief", (SMALL, replace(SMALL, code="none")), lambda share, words: said.append(words))
-    assert [line["view"] for line in lines] == [0, 7, 0, 7]
+    assert [(line["view"], line["code"]) for line in lines] == [(0, "bits"), (0, "none"), (7, "bits"), (7, "none")]
     assert all(0 < line["away"] < 3 and 0 < line["share"] < 0.5 for line in lines)
     monkeypatch.setattr(stage, "_picture", lambda *given: pytest.fail("drawn again"))
-    assert stage.swept("chief", (SMALL,), lambda share, words: None) == lines[:2]
+    assert stage.swept("chief", (SMALL,), lambda share, words: None) == lines[::2]
     text = report.write(tmp_path, [*lines, *({**line, "preset": "land", "away": 0.125} for line in lines[:1])])
     assert all((tmp_path / name).stat().st_size > 0 for name in report.FILES)
     rows = [line for line in text.splitlines() if line.startswith("| 16 | 33 | position_corrected | bits |")]
     assert len(rows) == 2, "one of each preset"
     cells, other = ([cell.strip() for cell in row.strip("|").split("|")] for row in rows)  # the knot, and the land
     assert (other[6], other[-1]) == ("0.125", "1")
-    own = [line["away"] for line in lines[:2]]
+    own = [line["away"] for line in lines[::2]]
     assert cells[6:8] == [f"{np.median(own):.3f}", f"{max(own):.3f}"]
     assert cells[-1] == "2"
 

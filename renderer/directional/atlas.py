@@ -92,6 +92,14 @@ class Atlas:
         depth = np.frombuffer(self._depth.read(alignment=1), np.float32).reshape(height, width, 1)
         return np.where(depth < 1, points, np.uint32(0xFFFFFFFF))
 
+    def chosen_weights(self) -> np.ndarray:
+        """(height, width, count) what each of them weighs, rows likewise."""
+        if self._weights is None:
+            return np.ones((self.size[1], self.size[0], 1), np.float16)
+        self._gl.finish()
+        weights = np.frombuffer(self._weights.read(alignment=1), np.float16)
+        return weights.reshape(self.size[1], self.size[0], self.count)
+
     def release(self) -> None:
         """Free everything."""
         if self._tiles is not None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import OrderedDict
 from collections.abc import Callable, Hashable, Mapping
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import moderngl
@@ -15,7 +16,7 @@ from renderer.directional.atlas import Atlas
 from renderer.directional.facing import directions_needed, faces_seen
 from renderer.directional.hemisphere import hemisphere_of
 from renderer.directional.points import code_texels, surfel_texels
-from renderer.directional.program import draw_source, select_source, shade_source, variant_of
+from renderer.directional.program import Variant, draw_source, select_source, shade_source, variant_of
 from renderer.directional.seen import Seen
 from renderer.directional.technique import SHADOW_CODE
 from renderer.directional.tiles import bounds
@@ -23,7 +24,7 @@ from renderer.gl.context import GL
 from renderer.gl.program import AnyTexture
 from renderer.gl.resident import Resident
 from renderer.gl.source import Source
-from renderer.gl.targets import run_fullscreen
+from renderer.gl.targets import Target, run_fullscreen
 from renderer.world.camera import Orthographic, camera_uniforms, pose
 from renderer.world.sky import sky_for, sky_uniforms
 from renderer.world.sun import angles, direction
@@ -34,8 +35,25 @@ if TYPE_CHECKING:
 Baked = Mapping[str, BakedArrays]
 Prepared = tuple[Source, dict[str, AnyTexture], dict[str, Any]]
 
+ROW = 1024
+"""Points in a row of a picture of them all."""
+
 POINTS_KEPT, SEEN_KEPT, ATLASES_KEPT = 4, 2, 6
 """Clouds, sets of faces and pictures of points that stay on the GPU."""
+
+
+@dataclass(frozen=True)
+class Chosen:
+    """Which points a sample shows, before they are lit.
+
+    Attributes:
+        atlas: the points. variant: of the shaders. textures, values: what their stages read.
+    """
+
+    atlas: Atlas
+    variant: Variant
+    textures: dict[str, AnyTexture]
+    values: dict[str, Any]
 
 
 class DirectionalRenderer:
@@ -63,6 +81,21 @@ class DirectionalRenderer:
             offset: of the sample inside its pixel, from the top-left corner.
             sample: its number; nothing here is drawn by chance.
         """
+        chosen = self.choose(state, baked, size, offset)
+        atlas, variant, textures, values = chosen.atlas, chosen.variant, chosen.textures, chosen.values
+        lights = (state.cloud.position_bits, *(entry.key for entry in baked.values()), state.sun, *state.lighting())
+        sky = self._sky_view(state, baked)
+        atlas.light(lights, shade_source(state, variant), {**textures, **sky}, values)
+        linear = getattr(state.selection, "magnification", "nearest") == "linear"
+        atlas.shaded.filter = (moderngl.LINEAR, moderngl.LINEAR) if linear else (moderngl.NEAREST, moderngl.NEAREST)
+        self.atlas = atlas
+        behind = {name: held for name, held in textures.items() if name == "light_environment"}
+        return draw_source(variant), {**sky, **behind, "shaded": atlas.shaded}, values
+
+    def choose(
+        self, state: DirectionalState, baked: Baked, size: tuple[int, int], offset: tuple[float, float]
+    ) -> Chosen:
+        """Find the points that a sample shows; arguments as of `prepare`."""
         arrays = {name: entry.arrays for name, entry in baked.items()}
         box = np.asarray(arrays["visibility"]["box"], np.float64)
         faces = faces_seen(state.camera, box)
@@ -72,24 +105,35 @@ class DirectionalRenderer:
         size_of = size if variant.per_pixel else (3 * variant.texels, variant.texels)
         atlas = self._atlas(size_of, variant.selection_count, variant.per_pixel)
         view = (state.camera, size, offset) if variant.per_pixel else (state.camera,)
-        chosen = (baked["visibility"].key, state.cloud.position_bits, state.selection, view)
         seen = self._layers(state, baked, arrays, box, faces)
         reach = (box[1] - box[0]).max() / state.visibility.texels
         atlas.choose(
-            chosen,
+            (baked["visibility"].key, state.cloud.position_bits, state.selection, view),
             select_source(state, variant),
             {**textures, **seen.textures},
             values,
             lambda: bounds(*seen.cells, reach, state.camera, box.mean(axis=0), size),
         )
-        lights = (state.cloud.position_bits, *(entry.key for entry in baked.values()), state.sun, *state.lighting())
-        sky = self._sky_view(state, baked)
-        atlas.light(lights, shade_source(state, variant), {**textures, **sky}, values)
-        linear = getattr(state.selection, "magnification", "nearest") == "linear"
-        atlas.shaded.filter = (moderngl.LINEAR, moderngl.LINEAR) if linear else (moderngl.NEAREST, moderngl.NEAREST)
-        self.atlas = atlas
-        behind = {name: held for name, held in textures.items() if name == "light_environment"}
-        return draw_source(variant), {**sky, **behind, "shaded": atlas.shaded}, values
+        return Chosen(atlas, variant, textures, values)
+
+    def lit(self, state: DirectionalState, baked: Baked) -> np.ndarray:
+        """What each point in use sends to the eye, (N, 3) float32 W m-2 sr-1: the same as in any picture of it."""
+        arrays = {name: entry.arrays for name, entry in baked.items()}
+        box = np.asarray(arrays["visibility"]["box"], np.float64)
+        textures, blocks = self._what_is_lit(state, baked, arrays)
+        variant = replace(variant_of(state, blocks), selection_count=1)
+        values = self._values(state, arrays, box, [], (1, 1), (0.5, 0.5))
+        count = len(arrays["visibility"]["used"])
+        numbers = np.minimum(np.arange(-(-count // ROW) * ROW, dtype=np.uint32), count - 1).reshape(-1, ROW, 1)
+        points, target = self._gl.texture2d(numbers), Target(self._gl, ROW, len(numbers))
+        try:
+            target.use()
+            shown = {**textures, **self._sky_view(state, baked), "chosen_points": points}
+            run_fullscreen(self._gl, shade_source(state, variant), shown, values)
+            return np.ascontiguousarray(target.read()[::-1].reshape(-1, 4)[:count, :3])
+        finally:
+            points.release()
+            target.release()
 
     def draw(self, prepared: Prepared) -> None:
         """Put a prepared sample before the background, into the bound framebuffer."""

@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass
+
+# before its library is loaded: threads that spin while others work take six times what a small picture costs
+os.environ.setdefault("OMP_WAIT_POLICY", "passive")
 
 import flip_evaluator
 import matplotlib

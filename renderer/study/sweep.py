@@ -124,10 +124,11 @@ def append(path: Path, line: Mapping[str, Any]) -> None:
     """Add one line and see it to the disk; a torn end of an earlier writer is cut off first."""
     path.parent.mkdir(parents=True, exist_ok=True)
     with path.open("ab+") as file:
-        file.seek(0)
-        whole = file.read()
-        if whole and not whole.endswith(b"\n"):
-            file.truncate(whole.rfind(b"\n") + 1)
+        size = file.seek(0, os.SEEK_END)
+        file.seek(max(size - 1, 0))
+        if size and file.read(1) != b"\n":
+            file.seek(0)
+            file.truncate(file.read().rfind(b"\n") + 1)
         file.write(json.dumps(line, allow_nan=False, sort_keys=True).encode() + b"\n")
         file.flush()
         os.fsync(file.fileno())
