@@ -15,9 +15,10 @@ help: ## Say what each command does
 run: setup ## Serve the viewer and print its address (ARGS="--port 9000" and the like go to it)
 	$(BIN)/umbrage serve $(ARGS)
 
-# Two processes: one computes while the other waits for a browser, a worker or the compiler.
+# Two processes: one computes while the other waits for a browser, a worker or the compiler. In each, linear algebra has
+# one thread: those of two processes would wait for each other, and busily.
 test: lint ## Lint, types and tests (ARGS go to pytest: "-k name", "-n 0" for one process)
-	$(BIN)/python -m pytest -n auto --maxprocesses 2 --no-loadscope-reorder $(ARGS)
+	OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n auto --maxprocesses 2 --no-loadscope-reorder $(ARGS)
 
 lint: setup-test ## Lint and types
 	$(BIN)/ruff check .

@@ -21,6 +21,8 @@ from renderer.world.camera import rays
 from renderer.world.sun import direction
 
 SIZE = (60, 40)
+NEAR = ("silver_lining", "valley", "sea_of_clouds", "snow_stratus")
+"""Seen from under or within the layer, which the weather of the whole Earth leaves closed; that takes longest to draw."""
 KEPT: dict[str, BakedArrays] = {}
 
 Shown = Callable[..., tuple[CloudsState, np.ndarray]]
@@ -44,7 +46,10 @@ def shown(thread: GLThread, painter: view.Painter) -> Shown:
     """A preset's state and its picture, (40, 60, 3) W m-2 sr-1, with what else is patched."""
 
     def draw(name: str, **patch: Any) -> tuple[CloudsState, np.ndarray]:
-        document = merge(merge(CloudsState().model_dump(mode="json"), PRESETS[name].patch), patch)
+        document = merge(CloudsState().model_dump(mode="json"), PRESETS[name].patch)
+        if name in NEAR:
+            document = merge(document, {"clouds": {"systems": False}})
+        document = merge(document, patch)
         state = validate(CloudsState, document)
         baked = {bake.name: _baked(bake) for bake in phenomena()["clouds"].bakes(state)}
         found = view.paint(thread, painter, state, baked, SIZE, 2).linear
