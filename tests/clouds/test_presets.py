@@ -22,7 +22,7 @@ from renderer.world.sun import direction
 
 SIZE = (60, 40)
 NEAR = ("silver_lining", "valley", "sea_of_clouds", "snow_stratus")
-"""Seen from under or within the layer, which the weather of the whole Earth leaves closed; that takes longest to draw."""
+"""Seen from under or within the layer, which the weather of the whole Earth leaves closed and takes longest to draw."""
 KEPT: dict[str, BakedArrays] = {}
 
 Shown = Callable[..., tuple[CloudsState, np.ndarray]]
