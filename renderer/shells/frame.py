@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -28,6 +28,9 @@ if TYPE_CHECKING:
 FAR = 1.0e30
 """What a picture from the sun holds where its rays meet nothing, as far away as can be."""
 
+STEPS = ("camera_origin_dx", "camera_origin_dy", "camera_dx", "camera_dy")
+"""Uniforms by which rays change from pixel to pixel."""
+
 DEPTHS = 1e-4
 """Nearest distance that is drawn over the farthest, at least: a depth of 24 bits tells less apart."""
 
@@ -42,6 +45,7 @@ class Frame:
         place: where the shell stands. size, offset, sample: of the picture, as `SceneRenderer.prepare` has them.
         textures, values: samplers and uniforms that every pass may read.
         things: other meshes of the scene, where there are any.
+        whole: size of the picture of which each of its pixels stands for two by two; None where they are its own.
     """
 
     renderer: ShellsRenderer
@@ -56,6 +60,7 @@ class Frame:
     textures: dict[str, AnyTexture]
     values: dict[str, Any]
     things: ThingMesh | None = None
+    whole: tuple[int, int] | None = None
 
     def take(self, textures: Mapping[str, AnyTexture], values: Mapping[str, Any]) -> None:
         """Let every later pass read these samplers and uniforms."""
@@ -69,11 +74,23 @@ class Frame:
             other = reach(camera, self.things.place)
             farthest = max(near_far[1], other[1])
             near_far = max(min(near_far[0], other[0]), DEPTHS * farthest), farthest
-        return view_projection(camera, self.size, self.offset, self.place.centre, near_far)
+        return self._projection(camera, self.size, self.offset, near_far)
+
+    def coarser(self, corner: tuple[float, float], state: ShellsState) -> Frame:
+        """A frame with one ray for two by two pixels of this one, as many pixels from their top-left one as `corner`
+        says; of a state that differs from this one's in how rays are followed."""
+        offset = (0.5 * (corner[0] + self.offset[0]), 0.5 * (corner[1] + self.offset[1]))
+        size = (-(-self.size[0] // 2), -(-self.size[1] // 2))
+        wider = {name: tuple(2 * part for part in self.values[name]) for name in STEPS}
+        values = {**self.values, **wider, "picture_size": size, "pixel_offset": offset}
+        textures = dict(self.textures)
+        return replace(
+            self, state=state, size=size, offset=offset, values=values, textures=textures, whole=self.size
+        )
 
     def entries(self) -> Layers:
         """Where the camera's rays come into the shell, layer by layer."""
-        key = (self.shell_key, self.state.camera, self.offset, variant_of(self.state).opaque)
+        key = (self.shell_key, self.state.camera, self.offset, variant_of(self.state).opaque, self.whole)
         return self._entries(key, self.state.camera, self.size, self.offset)
 
     def from_sun(
@@ -111,9 +128,21 @@ class Frame:
         return float(2 ** (round(4 * math.log2(max(width, 1e-9))) / 4))
 
     def _entries(self, key: Any, camera: Any, size: tuple[int, int], offset: tuple[float, float]) -> Layers:
-        matrix = view_projection(camera, size, offset, self.place.centre, reach(camera, self.place))
+        matrix = self._projection(camera, size, offset, reach(camera, self.place))
         view = View(key, size, self.renderer.triangles(self.shell_key), matrix)
         return self.renderer.entries.find(view)
+
+    def _projection(
+        self, camera: Any, size: tuple[int, int], offset: tuple[float, float], near_far: tuple[float, float]
+    ) -> np.ndarray:
+        """`view_projection` of a camera; of this frame's own, whose pixels may be wider than its picture's."""
+        if self.whole is None or camera is not self.state.camera:
+            return view_projection(camera, size, offset, self.place.centre, near_far)
+        matrix = view_projection(camera, self.whole, (0.5, 0.5), self.place.centre, near_far)
+        across, down = (0.5 * whole / side for whole, side in zip(self.whole, size, strict=True))
+        spread = np.diag([across, down, 1.0, 1.0])
+        spread[:2, 3] = across + (1 - 2 * offset[0]) / size[0] - 1, 1 - down - (1 - 2 * offset[1]) / size[1]
+        return np.asarray(spread @ matrix)
 
 
 def reach(camera: Any, place: Placed) -> tuple[float, float]:

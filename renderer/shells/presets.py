@@ -26,6 +26,9 @@ def _sun(azimuth: float, elevation: float) -> dict[str, Any]:
 
 _HOLLOW = {"opaque": False}
 
+_SPARSE = {"first_rays": 1}
+"""Thin matter, of which each ray has far to go and many places to light."""
+
 _MOVING = "Moving"
 
 _BESIDE = "Beside other meshes"
@@ -51,6 +54,7 @@ PRESETS = {
             "base": _HOLLOW,
             "camera": _camera(3.2, 200, 20),
             "sun": _sun(150, 50),
+            "sampling": _SPARSE,
         },
     ),
     "teapot_wicker": Preset(
@@ -139,6 +143,7 @@ PRESETS = {
             "base": {"colour": [0.2, 0.26, 0.07]},
             "camera": _camera(4.0, 200, 22, 40),
             "sun": _sun(290, 25),
+            "sampling": _SPARSE,
         },
     ),
     "tube_rocks": Preset(

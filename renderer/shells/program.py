@@ -110,10 +110,9 @@ void main() {
     gathered = buffer_of(sum);
 }"""
 
-COMPOSE_BODY = """uniform sampler2D gathered;
-layout(location = 0) out vec4 radiance;
+COMPOSE_BODY = """layout(location = 0) out vec4 radiance;
 void main() {
-    vec4 sum = texelFetch(gathered, ivec2(gl_FragCoord.xy), 0);
+    vec4 sum = %s;
     sum.rgb *= buffer_white;
 #if THINGS == 1
     vec4 thing = texelFetch(thing_seen, ivec2(gl_FragCoord.xy), 0);
@@ -182,7 +181,15 @@ def walk_loop(inside: bool) -> str:
 
 def compose_source(state: ShellsState) -> Source:
     """The fragment stage that lays what was gathered before the background."""
-    return composed((), variant_of(state), (), COMPOSE_BODY)
+    body = COMPOSE_BODY % "texelFetch(gathered, ivec2(gl_FragCoord.xy), 0)"
+    return composed((), variant_of(state), (), body, "uniform sampler2D gathered;")
+
+
+def spread_source(state: ShellsState, rays: int) -> Source:
+    """The same, of fewer rays than pixels: `rays` for two by two."""
+    body = COMPOSE_BODY % "spread_out(picture_pixel(gl_FragCoord.xy, picture_size))"
+    samplers = "".join(f"\nuniform sampler2D gathered_{number};" for number in range(rays))
+    return composed((), variant_of(state), ("shells/first_look.glsl",), body, f"#define FIRST_RAYS {rays}{samplers}")
 
 
 def chosen(state: ShellsState, slots: tuple[str, ...]) -> Chosen:

@@ -37,6 +37,11 @@ class ShellsTechnique(Technique):
         """Values of `extra_declarations` that no pass gives."""
         return {}
 
+    def first_sample(self) -> tuple[ShellsTechnique, int]:
+        """What stands for it in a picture's first sample, the one that is shown while something moves, and how many
+        rays two by two pixels have there."""
+        return self, 4
+
 
 class ShadowTechnique(ShellsTechnique):
     """What the shell leaves of the sun: it may look from the sun before the frame."""

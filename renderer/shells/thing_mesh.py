@@ -28,6 +28,9 @@ if TYPE_CHECKING:
 MESHES_KEPT = 2
 """Sets of things that stay on the GPU: those of two pictures side by side."""
 
+SIZES_KEPT = 2
+"""Sizes of pictures of them that are kept: of a picture, and of its fewer rays."""
+
 READ = ("3f 3f 3f 3f", "position", "smoothed", "facing", "albedo")
 
 SEEN_BODY = """in vec3 thing_place;
@@ -43,6 +46,13 @@ void main() {
     vec3 before = thing_place + 1.5 * thing_texel * side * thing_facing;
     vec3 light = light_base(before, side * normalize(thing_smooth), sunlit, thing_albedo);
     seen = vec4(light, max(dot(thing_place - ray.origin, ray.direction), 1.0e-6));
+}"""
+
+MET_BODY = """in vec3 thing_place;
+layout(location = 0) out vec4 seen;
+void main() {
+    Ray ray = pixel_ray(gl_FragCoord.xy);
+    seen = vec4(vec3(0.0), max(dot(thing_place - ray.origin, ray.direction), 1.0e-6));
 }"""
 
 MAP_BODY = """in vec3 thing_place;
@@ -66,11 +76,13 @@ class ThingMesh:
     """Things as they stand, and what was drawn of them last.
 
     Args:
-        gl: the context's objects. things: models. shapes: baked. place: where the shell stands.
+        gl: the context's objects. things: models. placed: their triangles. place: where the shell stands.
+        key: equal ones look the same from everywhere.
     """
 
-    def __init__(self, gl: GL, things: Things, placed: PlacedThings, place: Placed) -> None:
+    def __init__(self, gl: GL, things: Things, placed: PlacedThings, place: Placed, key: Hashable) -> None:
         self._gl = gl
+        self.key = key
         middle, radius = sphere_round(placed.corners)
         self.place = Placed(middle, radius, place.gradients)
         level = np.array([isinstance(thing, Ground) for thing in things.list])[placed.owner]
@@ -80,7 +92,7 @@ class ThingMesh:
         self._centre = place.centre
         self._count = 3 * len(placed.corners)
         self._buffer = gl.ctx.buffer(_packed(placed, place.centre))
-        self._seen: Target | None = None
+        self._seen: dict[tuple[int, int], Target] = {}
         self._map: tuple[Hashable, Target, dict[str, Any]] | None = None
 
     def draw(self, fragment: Source, textures: Mapping[str, AnyTexture], values: Mapping[str, Any]) -> None:
@@ -99,16 +111,24 @@ class ThingMesh:
 
     def seen(self, frame: Frame) -> moderngl.Texture:
         """Light and distance [m] of what the camera sees of them, 0 where it sees none."""
-        if self._seen is None:
-            self._seen = Target(self._gl, *frame.size, depth=True)
-        self._seen.resize(*frame.size)
-        self._seen.use()
-        self._seen.clear()
+        return self._look(frame, things_source(frame.state))
+
+    def met(self, frame: Frame) -> moderngl.Texture:
+        """Distance [m] alone, in the same place; it holds until things are seen or met again in that size."""
+        return self._look(frame, met_source(frame.state))
+
+    def _look(self, frame: Frame, source: Source) -> moderngl.Texture:
+        if frame.size not in self._seen:
+            while len(self._seen) >= SIZES_KEPT:
+                self._seen.pop(next(iter(self._seen))).release()
+            self._seen[frame.size] = Target(self._gl, *frame.size, depth=True)
+        target = self._seen[frame.size] = self._seen.pop(frame.size)
+        target.use()
+        target.clear()
         self._gl.ctx.enable_only(moderngl.DEPTH_TEST)
-        values = {**frame.values, "view_projection": frame.matrix()}
-        self.draw(things_source(frame.state), frame.textures, values)
+        self.draw(source, frame.textures, {**frame.values, "view_projection": frame.matrix()})
         self._gl.ctx.enable_only(moderngl.NOTHING)
-        return self._seen.texture
+        return target.texture
 
     def from_sun(self, sun: np.ndarray, resolution: int) -> tuple[dict[str, AnyTexture], dict[str, Any]]:
         """The map of what they leave of the sun, unless it is still there, and how a place finds its texel."""
@@ -122,8 +142,8 @@ class ThingMesh:
     def release(self) -> None:
         """Free them."""
         self._buffer.release()
-        if self._seen is not None:
-            self._seen.release()
+        while self._seen:
+            self._seen.popitem()[1].release()
         if self._map is not None:
             self._map[1].release()
 
@@ -153,7 +173,7 @@ class ThingMeshes:
         alone = all(isinstance(thing, Ground) for thing in things.list)  # the shell is what their map is as wide as
         key = (baked.key, things.list, tuple(float(part) for part in place.centre), place.radius if alone else None)
         if key not in self._held:
-            self._held[key] = ThingMesh(self._gl, things, placed_things(things, baked.arrays), place)
+            self._held[key] = ThingMesh(self._gl, things, placed_things(things, baked.arrays), place, key)
             while len(self._held) > MESHES_KEPT:
                 self._held.popitem(last=False)[1].release()
         self._held.move_to_end(key)
@@ -171,6 +191,11 @@ def things_source(state: ShellsState) -> Source:
 
     lit = state if state.light.kind == "unlit" else state.model_copy(update={"light": Lambert()})
     return composed(chosen(lit, ("filter", "shadow", "light")), variant_of(state), (), SEEN_BODY)
+
+
+def met_source(state: ShellsState) -> Source:
+    """The fragment stage that tells how far away things are."""
+    return composed((), variant_of(state), (), MET_BODY)
 
 
 def _map_source() -> Source:

@@ -68,9 +68,9 @@ def lit_along_traces(frame: Frame, layers: Layers, inside: bool) -> moderngl.Tex
         layers: where they come in. inside: whether the camera is within a cell.
     """
     state, count = frame.state, targets(frame.state)
-    # What other meshes hide is not told by what is compared here.
-    shows = None if frame.things is not None else (
+    shows = (
         "trace", frame.texture_key, frame.values["sample_shift"], inside, variant_of(state),
+        frame.things.key if frame.things is not None else None,
         *(getattr(state, part) for part in ("voxels", "filter", "sampling", "order", "accumulation")),
     )  # fmt: skip
     kinds: tuple[Kind, ...] = ((4, "f4"),) * count

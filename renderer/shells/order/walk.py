@@ -6,11 +6,14 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 from renderer.core.params import param
 from renderer.gl.layers import Kind
-from renderer.shells.program import compose_source, walk_source
+from renderer.shells.first_look import rays_of_blocks
+from renderer.shells.program import compose_source, spread_source, walk_source
 from renderer.shells.technique import OrderTechnique
 from renderer.shells.traced import lit_along_traces
 
 if TYPE_CHECKING:
+    import moderngl
+
     from renderer.gl.program import AnyTexture
     from renderer.shells.frame import Frame
 
@@ -30,13 +33,26 @@ class Walk(OrderTechnique):
     def picture(self, frame: Frame) -> tuple[Any, dict[str, AnyTexture], dict[str, Any]]:
         """Find where rays come in, and walk; what is gathered goes before the background."""
         inside = frame.values["start_tet"] >= 0
-        if frame.things is not None:
-            frame.textures["thing_seen"] = frame.things.seen(frame)
-        layers = frame.entries()
-        if frame.state.sampling.whole:
-            gathered = lit_along_traces(frame, layers, inside)
+        sampling, rays = frame.state.sampling.first_sample()
+        if frame.sample == 0 and rays < 4:
+            state = frame.state.model_copy(update={"sampling": sampling})
+            source, gathered = spread_source(frame.state, rays), rays_of_blocks(frame, state, rays, inside)
         else:
-            kinds: tuple[Kind, ...] = ((4, frame.state.accumulation.dtype),)
-            source = walk_source(frame.state, inside)
-            gathered = layers.draw(kinds, 0.0, source, frame.textures, frame.values, everywhere=inside)[0]
-        return compose_source(frame.state), {**frame.textures, "gathered": gathered}, frame.values
+            source, gathered = compose_source(frame.state), {"gathered": _gathered(frame, inside)}
+        return source, {**_with_things(frame).textures, **gathered}, frame.values
+
+
+def _gathered(frame: Frame, inside: bool) -> moderngl.Texture:
+    layers = _with_things(frame).entries()
+    if frame.state.sampling.whole:
+        return lit_along_traces(frame, layers, inside)
+    kinds: tuple[Kind, ...] = ((4, frame.state.accumulation.dtype),)
+    source = walk_source(frame.state, inside)
+    return layers.draw(kinds, 0.0, source, frame.textures, frame.values, everywhere=inside)[0]
+
+
+def _with_things(frame: Frame) -> Frame:
+    """The frame, once its camera has looked at other meshes."""
+    if frame.things is not None and "thing_seen" not in frame.textures:
+        frame.textures["thing_seen"] = frame.things.seen(frame)
+    return frame

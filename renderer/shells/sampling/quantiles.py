@@ -32,6 +32,19 @@ class Quantiles(ShellsTechnique):
         16, label="Most samples", help="Of one segment.", cost="build", unit="count", ge=1, le=4096
     )
 
+    first_rays: Literal[1, 2, 4] = param(
+        2, label="First rays", help="Of two by two pixels in a picture's first sample, which is smoothed below 4.",
+        cost="host", unit="count",
+    )  # fmt: skip
+    first_places: int = param(
+        6, label="First places", help="Of such a ray that are lit.", cost="host", unit="count", ge=1, le=14
+    )
+
+    def first_sample(self) -> tuple[Quantiles, int]:
+        """Fewer rays, of more places each: what is shown while a camera moves."""
+        places = self.places if self.first_rays == 4 else self.first_places
+        return self.model_copy(update={"places": places}), self.first_rays
+
     def bakes(self, state: Any) -> list[Bake]:
         """How far rays may go within each voxel's matter."""
         return [strides_bake(texture_bake(state.texture), state.voxels.wrap)]

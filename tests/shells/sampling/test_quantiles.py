@@ -14,7 +14,7 @@ from tests.shells.test_against_reference import GLOBE, apart, blobs, reference, 
 
 Draw = Callable[..., np.ndarray]
 FILE = "shells/sampling/quantiles.glsl"
-QUANTILES = {"kind": "quantiles", "rate": 1.0, "most": 256}
+QUANTILES = {"kind": "quantiles", "rate": 1.0, "most": 256, "first_rays": 4}
 STRAIGHT = {"interpolation": "straight", "storage": "float"}
 LIT: dict[str, Any] = {
     **GLOBE, "sampling": {**QUANTILES, "rate": 2.0}, "voxels": STRAIGHT, "light": {"kind": "lambert"},

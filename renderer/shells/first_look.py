@@ -1,0 +1,36 @@
+"""The first sample of a picture: fewer rays than pixels, and smoothed between them.
+
+It is what is shown while the camera moves, where each ray would be followed anew. Rays of neighbouring pixels tell
+nearly the same, and what they differ in is mostly noise: half as many, each lit at more places and smoothed, are nearer
+to the picture than one for each pixel. It is one of the samples of the mean, from which its smoothing fades.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from renderer.shells.traced import lit_along_traces
+
+if TYPE_CHECKING:
+    from renderer.gl.program import AnyTexture
+    from renderer.shells.frame import Frame
+    from renderer.shells.state import ShellsState
+
+CORNERS = {1: ((0.5, 0.5),), 2: ((0.0, 0.0), (1.0, 1.0))}
+"""By the number of rays of two by two pixels: where in them each is, pixels from the top-left one."""
+
+
+def rays_of_blocks(frame: Frame, state: ShellsState, rays: int, inside: bool) -> dict[str, AnyTexture]:
+    """Light and opacity of some rays of each two by two pixels: `gathered_0` and so on, a ray of each block in each.
+
+    Args:
+        frame: of the picture. state: by which its rays are followed. rays: of a block.
+        inside: whether the camera is within a cell.
+    """
+    gathered: dict[str, AnyTexture] = {}
+    for number, corner in enumerate(CORNERS[rays]):
+        part = frame.coarser(corner, state)
+        if part.things is not None:
+            part.textures["thing_seen"] = part.things.met(part)
+        gathered[f"gathered_{number}"] = lit_along_traces(part, part.entries(), inside)
+    return gathered
