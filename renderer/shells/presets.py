@@ -6,6 +6,9 @@ from typing import Any
 
 from renderer.core.technique import Preset
 
+_COMMON_DAY = {"haze": 20}
+"""Air in which shade on the ground keeps a quarter of the light, and is grey; very clear air leaves a tenth, blue."""
+
 
 def _camera(
     distance: float, azimuth: float, elevation: float, field_of_view: float = 35, height: float = 0.0
@@ -79,6 +82,7 @@ PRESETS = {
             "base": {"colour": [0.1, 0.06, 0.03]},
             "camera": _camera(4.2, 165, 24, 35, -0.1),
             "sun": _sun(250, 36),
+            "air": _COMMON_DAY,
             "things": {
                 "list": [
                     {"kind": "box", "position": [0, 0, -0.49], "width": 2.6, "depth": 2.0, "height": 0.08,
@@ -97,6 +101,7 @@ PRESETS = {
         {
             "camera": _camera(4.4, 150, 20, 35, -0.15),
             "sun": _sun(225, 38),
+            "air": _COMMON_DAY,
             "extrusion": {"thickness": 0.16},
             "base": {"colour": [0.12, 0.07, 0.04]},
             "things": {

@@ -63,6 +63,17 @@ def _shown(linear: NDArray, exposure_ev: float, curve: ToneCurve, background: tu
     return srgb_encode(light)
 
 
+def dither(height: int, width: int) -> NDArray[np.float64]:
+    """What is added to each pixel's sRGB codes before they are rounded, (height, width, 1) in codes.
+
+    Twin of `display_dither` in `shaders/lib/display.glsl` (Bayer 1973): sixteen values of mean zero in every square of
+    four pixels.
+    """
+    two = np.array([[0, 2], [3, 1]])
+    four = np.block([[4 * two, 4 * two + 2], [4 * two + 3, 4 * two + 1]])
+    return ((np.tile(four, (height // 4 + 1, width // 4 + 1))[:height, :width] + 0.5) / 16.0 - 0.5)[..., None]
+
+
 def display(
     linear: NDArray,
     exposure_ev: float,
@@ -78,12 +89,13 @@ def display(
         background: linear display light in [0, 1] that shows through where alpha is below one.
 
     Returns:
-        (height, width, 3) sRGB codes, rounded to nearest.
+        (height, width, 3) sRGB codes, dithered.
 
     Raises:
         InputError: an array of another shape.
     """
-    return np.floor(_shown(linear, exposure_ev, curve, background) * 255.0 + 0.5).astype(np.uint8)
+    codes = _shown(linear, exposure_ev, curve, background) * 255.0
+    return np.floor(codes + dither(*codes.shape[:2]) + 0.5).astype(np.uint8)
 
 
 def encode_rgb8(rgb8: NDArray[np.uint8], format: str, quality: int = JPEG_QUALITY) -> bytes:  # noqa: A002

@@ -8,8 +8,12 @@ air is white, (1, 1, 1) times 1361 W m-2, and all colour comes from the air (as 
 
 Deviations: haze of one kind, a spherical Earth, no refraction, no polarisation; multiple scattering is isotropic and
 summed in closed form. Three wavelengths shown as red, green and blue make deep twilight more purple than a spectrum
-would, because ozone takes more of 600 nm than of 680 nm. A sky is clear or wholly overcast
-(`renderer/world/overcast.py`); below the horizon it repeats the horizon's colour.
+would, because ozone takes more of 600 nm than of 680 nm. By day, against a spectrum seen by the CIE's observer and
+relative to green, skylight has a tenth too little red in very clear air and is right to 2 % on a common day; sunlight
+has 5 % too much red at 45 degrees and 19 % at 10 (`tests/world/test_sky_colours.py`). White is the sun above the air,
+as with a camera set to daylight: shade under a very clear sky is a tenth as bright as the sun beside it and deeply
+blue, (0.5, 1, 2.2) for white ground; on a common day, haze 20, it is a fifth and (0.8, 1, 1.5). A sky is clear or
+wholly overcast (`renderer/world/overcast.py`); below the horizon it repeats the horizon's colour.
 """
 
 from __future__ import annotations

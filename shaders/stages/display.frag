@@ -1,4 +1,4 @@
-// The displayed picture of a linear one: mean of the samples, exposure, tone curve, background, sRGB.
+// The displayed picture of a linear one: mean of the samples, exposure, tone curve, background, sRGB, dither.
 // Row 0 of the target is the top row of the picture, so that reading it back needs no flip.
 #include "lib/display.glsl"
 
@@ -15,5 +15,5 @@ void main() {
     vec4 mean = texelFetch(source, ivec2(pixel.x, size.y - 1 - pixel.y), 0) / samples;
     vec3 light = display_curve(mean.rgb * exp2(exposure_ev), curve);
     light += (1.0 - clamp(mean.a, 0.0, 1.0)) * background;
-    shown = vec4(display_srgb(light), 1.0);
+    shown = vec4(display_srgb(light) + display_dither(pixel) / 255.0, 1.0);
 }

@@ -21,6 +21,7 @@ from renderer.world.image import (
     FORMATS,
     MEDIA_TYPES,
     display,
+    dither,
     encode_rgb8,
     filmic,
     save_image,
@@ -68,8 +69,19 @@ def test_what_is_behind_shows_after_the_curve() -> None:
     """A clear pixel over white is white at every exposure; a half covered one mixes in display light."""
     clear = np.zeros((1, 1, 4), np.float32)
     assert display(clear, -10.0, "filmic", (1.0, 1.0, 1.0)).min() == 255
-    half = np.array([[[0.0, 0.0, 0.0, 0.5]]], np.float32)
-    assert int(display(half, 0.0, "linear", (1.0, 1.0, 1.0))[0, 0, 0]) == 188  # sRGB code of 0.5
+    half = np.full((4, 4, 4), [0.0, 0.0, 0.0, 0.5], np.float32)
+    assert display(half, 0.0, "linear", (1.0, 1.0, 1.0)).mean() == pytest.approx(187.516, abs=1 / 16)  # sRGB's of 0.5
+
+
+def test_a_slow_gradient_shows_no_bands() -> None:
+    """Of three codes over 24 squares of four pixels, each is right to a sixteenth in the mean; whole codes stay so."""
+    wanted = np.linspace(214, 217, 24)
+    codes = np.tile(wanted.repeat(4)[None, :, None], (4, 1, 3))
+    squares = display(srgb_decode(codes / 255), 0.0, "linear").reshape(4, 24, 4, 3).mean(axis=(0, 2, 3))
+    assert np.abs(squares - wanted).max() < 1 / 16
+    assert np.abs(np.round(wanted) - wanted).max() > 0.4, "which rounding alone misses"
+    every = np.tile(np.arange(256.0)[None, :, None], (4, 1, 3))
+    np.testing.assert_array_equal(display(srgb_decode(every / 255), 0.0, "linear"), every)
 
 
 @pytest.mark.parametrize("curve", ["linear", "filmic"])
@@ -101,14 +113,14 @@ def test_radiance_survives_its_file(picture: np.ndarray, tmp_path: Path, name: s
 
 
 def test_displayed_pictures_survive_their_file(picture: np.ndarray, tmp_path: Path) -> None:
-    """PNG keeps the codes of `display`; 16 bits lie within half a code of 8; JPEG keeps a smooth picture to 3 codes."""
+    """PNG keeps the codes of `display`; 16 bits, dithered, round to 8; JPEG keeps a smooth picture to 3 codes."""
     codes = display(picture, -1.0)
     png = np.asarray(Image.open(io.BytesIO(save_image("png", picture, -1.0))))
     np.testing.assert_array_equal(png, codes)
     assert save_image("png", codes) == save_image("png", picture, -1.0)
     deep = imagecodecs.png_decode(save_image("png16", picture, -1.0))
     assert deep.dtype == np.uint16
-    assert np.abs(deep / 257.0 - codes).max() <= 0.51
+    assert np.abs(deep / 257.0 + dither(13, 17) - codes).max() <= 0.51
     ramp = np.broadcast_to(np.linspace(20, 220, 32, dtype=np.uint8)[:, None, None], (32, 32, 3))
     jpeg = np.asarray(Image.open(io.BytesIO(encode_rgb8(np.ascontiguousarray(ramp), "jpeg", 95))))
     assert np.abs(jpeg.astype(int) - ramp).max() <= 3
