@@ -9,6 +9,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import moderngl
+
 from renderer.shells.traced import lit_along_traces
 
 if TYPE_CHECKING:
@@ -32,5 +34,8 @@ def rays_of_blocks(frame: Frame, state: ShellsState, rays: int, inside: bool) ->
         part = frame.coarser(corner, state)
         if part.things is not None:
             part.textures["thing_seen"] = part.things.met(part)
-        gathered[f"gathered_{number}"] = lit_along_traces(part, part.entries(), inside)
+        texture = lit_along_traces(part, part.entries(), inside)
+        texture.filter = moderngl.LINEAR, moderngl.LINEAR
+        texture.repeat_x = texture.repeat_y = False
+        gathered[f"gathered_{number}"] = texture
     return gathered

@@ -29,8 +29,8 @@ def _sun(azimuth: float, elevation: float) -> dict[str, Any]:
 
 _HOLLOW = {"opaque": False}
 
-_SPARSE = {"first_rays": 1}
-"""Thin matter, of which each ray has far to go and many places to light."""
+_SPARSE = {"first_rays": 1, "first_places": 6}
+"""Thin matter: each ray has far to go, and many places to light."""
 
 _MOVING = "Moving"
 
@@ -136,6 +136,7 @@ PRESETS = {
             "base": _HOLLOW,
             "camera": _camera(3.6, 180, 12),
             "sun": _sun(230, 40),
+            "sampling": {"first_places": 6},
         },
     ),
     "plane_fog": Preset(
@@ -161,6 +162,8 @@ PRESETS = {
             "base": {"colour": [0.1, 0.09, 0.08]},
             "camera": _camera(3.4, 160, 14),
             "sun": _sun(95, 35),
+            "sampling": {"first_places": 2},
+            "shadow": {"close": 2},
         },
     ),
     "fur_growing": Preset(

@@ -20,7 +20,7 @@ class Quantiles(ShellsTechnique):
     whole: ClassVar[bool] = True
 
     kind: Literal["quantiles"] = "quantiles"
-    rate: float = param(0.7, label="Rate", help="Samples a voxel.", ge=0.05, le=64)
+    rate: float = param(1.4, label="Rate", help="Samples a voxel.", ge=0.05, le=64)
     jitter: float = param(
         1.0, label="Jitter", help="By how much of a step samples move between pictures.", unit="ratio", ge=0, le=1
     )
@@ -37,7 +37,7 @@ class Quantiles(ShellsTechnique):
         cost="host", unit="count",
     )  # fmt: skip
     first_places: int = param(
-        6, label="First places", help="Of such a ray that are lit.", cost="host", unit="count", ge=1, le=14
+        4, label="First places", help="Of such a ray that are lit.", cost="host", unit="count", ge=1, le=14
     )
 
     def first_sample(self) -> tuple[Quantiles, int]:
