@@ -137,10 +137,15 @@ def opened(session: Any, scene: str, case: Case) -> dict[str, Any]:
     moves = [{name: value for name, value in one.items() if value != documents[0][name]} for one in documents[1:]]
     known = techniques(scene, case.slot)
     words = [
-        ", ".join([known[one.kind].title, *(f"{k.replace('_', ' ')} {v}" for k, v in one.parameters.items())])
+        ", ".join([known[one.kind].title, *(_in_words(name, value) for name, value in one.parameters.items())])
         for one in pair
     ]
     return {"state": failing, "patch": {case.slot: surviving[case.slot]}, "words": words, "moves": moves}
+
+
+def _in_words(name: str, value: Any) -> str:
+    """A parameter as a reader of the page takes it."""
+    return f"{name.replace('_', ' ')} {({True: 'on', False: 'off'})[value] if isinstance(value, bool) else value}"
 
 
 def judge(session: Session, scene: str, name: str, tell: Tell | None = None) -> Verdict:

@@ -15,6 +15,7 @@ from fastapi.exceptions import RequestValidationError
 from starlette.exceptions import HTTPException
 from starlette.responses import Response
 
+from renderer.core.documents import told
 from renderer.core.errors import (
     Cancelled,
     GLUnavailable,
@@ -105,11 +106,7 @@ async def _umbrage(request: Request, failure: Exception) -> Response:
 async def _request(request: Request, failure: Exception) -> Response:
     """FastAPI's own handler echoes the input and fails on NaN; this one names the fields only."""
     found = failure.errors() if isinstance(failure, RequestValidationError) else []
-    entries = [
-        _cut({"field": ".".join(str(key) for key in error["loc"][1:]), "message": str(error["msg"]), "allowed": ""})
-        for error in found
-    ]
-    return Json({"errors": entries}, 422)
+    return Json({"errors": [_cut(told(error).as_dict()) for error in found]}, 422)
 
 
 async def _http(request: Request, failure: Exception) -> Response:

@@ -53,7 +53,7 @@ export class Compare {
       this.note, row("B differs in", this.slot), row("B uses", this.kind),
       el("button", { type: "button", class: "wide", text: "Compare with the reference", on: { click: () => this.reference() } }),
       this.progress.root, modes.group, this.gainRow, this.scale, this.numbers,
-      el("button", { type: "button", class: "quiet", text: "Stop comparing", on: { click: () => this.stop() } }));
+      this.end = el("button", { type: "button", class: "quiet", text: "Stop comparing", on: { click: () => this.stop() } }));
     this.fillKinds(false);
     this.update();
   }
@@ -62,8 +62,8 @@ export class Compare {
     const slot = this.store.scene.slots.find((item) => item.name === this.slot.value);
     const here = this.store.document[slot.name]?.kind;
     const options = slot.techniques.filter((item) => item.available);
-    this.kind.replaceChildren(...options.map((item) => el("option", { value: item.kind, text: item.title })));
-    this.kind.value = (options.find((item) => item.kind !== here) ?? options[0])?.kind ?? "";
+    this.kind.replaceChildren(el("option", { value: "", text: "Choose …" }), ...options.map((item) => el("option", { value: item.kind, text: item.title })));
+    this.kind.value = start ? (options.find((item) => item.kind !== here) ?? options[0])?.kind ?? "" : "";
     if (start) this.technique();
   }
 
@@ -74,6 +74,7 @@ export class Compare {
 
   /** B is the same scene with another technique, streamed beside A. */
   technique() {
+    if (!this.kind.value) return this.stop();
     const slot = this.slot.value;
     const node = this.store.schema.members(this.store.schema.at(slot, this.store.document)).get(this.kind.value);
     this.beside({ [slot]: this.store.schema.fresh(node) });
@@ -117,6 +118,7 @@ export class Compare {
   async take(result) {
     if (this.patch) this.link.send({ type: "compare", patch: null });
     this.patch = null;
+    this.kind.value = "";
     this.note.replaceChildren();
     const image = async (word) => {
       const [, url] = Object.entries(result.files).find(([name]) => name.startsWith(word));
@@ -170,8 +172,9 @@ export class Compare {
   update() {
     for (const radio of this.radios ?? []) {
       radio.checked = radio.value === this.mode;
-      radio.disabled = radio.value === "error" && !this.truth;
+      radio.disabled = !this.active || (radio.value === "error" && !this.truth);
     }
+    if (this.end) this.end.hidden = !this.active;
     this.gainRow.hidden = this.mode !== "difference";
     this.scale.hidden = !this.truth || this.mode !== "error";
     this.handle.hidden = !this.active || !["split", "error"].includes(this.mode);
@@ -185,6 +188,7 @@ export class Compare {
     this.screen.forget();
     this.abort?.abort();
     this.patch = this.truth = null;
+    if (this.kind) this.kind.value = "";
     this.numbers?.replaceChildren();
     this.note?.replaceChildren();
     this.show("split");

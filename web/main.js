@@ -229,7 +229,10 @@ async function start() {
     panels.drawn = true;
     panels.learn();
   }, { once: true });
-  store.addEventListener("scene", () => { tools.editor.hidden = !store.schema.at("extrusion", store.document); });
+  store.addEventListener("scene", () => {
+    tools.editor.hidden = !store.schema.at("extrusion", store.document);
+    tools.sunlight.hidden = !store.schema.at("terrain", store.document);
+  });
   pointer.addEventListener("pick", ({ detail }) => probe((made) => made.ask(detail)));
   screen.addEventListener("size", () => link.send({ type: "resize", width: screen.width, height: screen.height }));
   link.addEventListener("open", (event) => opened(event).catch((error) => notices.toast(error.message, "refusal")));

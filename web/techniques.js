@@ -7,7 +7,7 @@ import { valueAt } from "./document.js";
 /** What a technique costs and how wrong it is, as the study measured it with everything else at its default. */
 const told = ({ sun, sun_ms: ms, camera, error, worst } = {}) => [
   error && `Error ${(100 * error).toFixed(0)} %, worst ${(100 * worst).toFixed(0)} %`,
-  sun && `sun moving ${sun.toPrecision(2)} yardsticks (${ms.toFixed(0)} ms), camera moving ${camera.toPrecision(2)}`,
+  sun && `frame ${ms.toFixed(0)} ms (${sun.toPrecision(2)} yardsticks) as the sun moves, ${((ms * camera) / sun).toFixed(0)} ms (${camera.toPrecision(2)}) as the camera does`,
 ].filter(Boolean).join(" · ");
 
 /** The picker of one slot. */

@@ -68,6 +68,20 @@ def validate(model: type[M], document: Any) -> M:
         raise InvalidDocument([failure]) from None
 
 
+def told(error: Mapping[str, Any]) -> InputError:
+    """An error of pydantic's in our words, where no model is known: of a request to the server.
+
+    Args:
+        error: of `errors()` of a request; what was sent is not read.
+    """
+    if error["type"] == "json_invalid":
+        return InputError("", "is not valid JSON")
+    context = error.get("ctx", {})
+    path = ".".join(_shown(key) for key in error["loc"][1:])
+    allowed = str(context.get("expected", "")).replace("'", "").replace(" or ", ", ") or _limit(context)
+    return InputError(path, WORDS.get(error["type"], str(error["msg"])), allowed)
+
+
 def _in_words(model: type[BaseModel], error: dict[str, Any]) -> InputError:
     path, owners, field = _resolve(model, error["loc"])
     kind = error["type"]

@@ -31,6 +31,8 @@ def test_another_scene_brings_its_presets_and_its_controls_and_the_first_comes_b
     open_page: Open, layer: dict[str, Any]
 ) -> None:
     page = open_page(layer)
+    study = page.get_by_role("button", name="Study the sun over days")
+    assert study.is_hidden(), "the sun is studied over the forest's land"
     page.click("#scene")
     page.check("#gallery input[value=forest]", force=True)
     house.until(page, "umbrage.store.scene.name === 'forest'")
@@ -38,6 +40,7 @@ def test_another_scene_brings_its_presets_and_its_controls_and_the_first_comes_b
     assert page.locator("#gallery .thumbnail-title").first.text_content() == "Noon"
     assert page.locator("#controls [data-path='shadow']").count() == 1
     assert page.locator("#controls [data-path='phase']").count() == 0
+    assert study.is_visible()
     page.check("#gallery input[value=clouds]", force=True)
     house.until(page, "umbrage.store.scene.name === 'clouds'")
     assert page.locator("#gallery .thumbnail-title").first.text_content() == "Sea of clouds"

@@ -75,7 +75,7 @@ def test_tables_are_read_in_the_dialog(page: Page) -> None:
 @pytest.mark.usefixtures("found")
 def test_every_technique_says_what_it_costs_and_how_wrong_it_is(page: Page) -> None:
     slot = page.locator("[data-slot='shadow']")
-    told = "Error 37 %, worst 62 % · sun moving 0.35 yardsticks (16 ms), camera moving 0.95"
+    told = "Error 37 %, worst 62 % · frame 16 ms (0.35 yardsticks) as the sun moves, 44 ms (0.95) as the camera does"
     expect(slot.locator(".slot-button .facts")).to_have_text(told)
     slot.locator(".slot-button").click()
     expect(slot.locator(".card").filter(has=page.locator("[value=none]")).locator(".facts")).to_have_text(told)

@@ -107,6 +107,16 @@ def test_a_wrong_request_names_its_field(client: TestClient, change: dict[str, A
     assert errors(answer)[0]["field"] == field
 
 
+def test_what_a_request_allows_is_said_in_the_house_s_words(client: TestClient) -> None:
+    """FastAPI's own sentences speak of inputs and give no range."""
+    small = errors(client.post("/api/render", json={**SMALL, "width": 0}))
+    assert small == [{"field": "width", "message": "is too small", "allowed": "at least 1"}]
+    kind = errors(client.post("/api/jobs", json={"kind": "walk", "scene": "fake"}))
+    assert kind == [{"field": "kind", "message": "is none of the choices", "allowed": "bake, reference, sunlight"}]
+    broken = client.post("/api/render", content=b"{", headers={"Content-Type": "application/json"})
+    assert errors(broken) == [{"field": "", "message": "is not valid JSON", "allowed": ""}]
+
+
 @pytest.mark.parametrize(
     "body",
     [b'{"scene":"fake","width":NaN}', b'{"scene":"fake","state":{"brightness":NaN}}', b"{", b"", b"[" * 50_000,
