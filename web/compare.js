@@ -40,7 +40,7 @@ export class Compare {
     this.slot.append(...this.store.scene.slots.map((slot) => el("option", { value: slot.name, text: slot.title })));
     this.kind = picker(() => this.technique());
     const modes = segments("How to compare", MODES, (mode) => this.show(mode));
-    this.radios = modes.radios;
+    Object.assign(this, { radios: modes.radios, modes: modes.group });
     this.progress = new Progress(() => this.abort?.abort());
     this.progress.root.hidden = true;
     this.numbers = el("dl", { class: "costs" });
@@ -172,9 +172,9 @@ export class Compare {
   update() {
     for (const radio of this.radios ?? []) {
       radio.checked = radio.value === this.mode;
-      radio.disabled = !this.active || (radio.value === "error" && !this.truth);
+      radio.disabled = radio.value === "error" && !this.truth;
     }
-    if (this.end) this.end.hidden = !this.active;
+    this.modes.hidden = this.end.hidden = !this.active;
     this.gainRow.hidden = this.mode !== "difference";
     this.scale.hidden = !this.truth || this.mode !== "error";
     this.handle.hidden = !this.active || !["split", "error"].includes(this.mode);
