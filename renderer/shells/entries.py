@@ -5,6 +5,7 @@ Everitt 2001, "Interactive order-independent transparency", of the boundary alon
 
 from __future__ import annotations
 
+import math
 from collections import OrderedDict
 from collections.abc import Hashable, Mapping
 from dataclasses import dataclass
@@ -21,8 +22,15 @@ from renderer.gl.targets import run_covered, run_fullscreen
 from renderer.shells.program import entry_sources
 from renderer.shells.world_scale import MOST_LAYERS
 
-VIEWS_KEPT = 4
-"""Views whose entries are kept, so that a moved sun finds the camera's again."""
+VIEWS_KEPT = 6
+"""Views whose entries are kept, so that a moved sun finds the camera's again: of two pictures side by side, each with
+two sets of rays, and of their suns."""
+
+PIXELS_KEPT = 2**22
+"""Of all of them together; what one picture needs is kept whatever its size."""
+
+OF_A_PICTURE = 3
+"""Views of one picture at most: its sun's, and two sets of rays."""
 
 
 @dataclass(frozen=True)
@@ -87,6 +95,10 @@ class Layers:
         """`entry_layers`, how many there are, and `entry_height`."""
         return {"entry_layers": self.count, "entry_height": self.size[1]}
 
+    def holds(self, kinds: tuple[Kind, ...], shows: Hashable) -> bool:
+        """Whether textures of these kinds show that already."""
+        return shows is not None and self._shown.get(kinds) == shows
+
     def draw(
         self,
         kinds: tuple[Kind, ...],
@@ -112,7 +124,7 @@ class Layers:
             made = [_texture(self._gl, self.size, kind) for kind in kinds]
             self._drawn[kinds] = made, self._gl.ctx.framebuffer(made, self.first.depth)
         made, framebuffer = self._drawn[kinds]
-        if shows is not None and self._shown.get(kinds) == shows:
+        if self.holds(kinds, shows):
             return made
         self._shown[kinds] = shows
         framebuffer.depth_mask = False
@@ -173,12 +185,15 @@ class Entries:
 
     def _room(self, size: tuple[int, int]) -> Layers:
         """Layers of a size: old ones, when enough are kept."""
-        while len(self._held) >= VIEWS_KEPT:
+        while len(self._held) >= (VIEWS_KEPT if self._pixels() + math.prod(size) <= PIXELS_KEPT else OF_A_PICTURE + 1):
             spare = self._held.popitem(last=False)[1]
             if (spare.size, spare.rows) == (size, self._rows):
                 return spare
             spare.release()
         return Layers(self._gl, size, self._rows)
+
+    def _pixels(self) -> int:
+        return sum(math.prod(layers.size) for layers in self._held.values())
 
     def _peel(self, layers: Layers, view: View) -> bool:
         """Whether all layers found room."""

@@ -32,8 +32,6 @@ def rays_of_blocks(frame: Frame, state: ShellsState, rays: int, inside: bool) ->
     gathered: dict[str, AnyTexture] = {}
     for number, corner in enumerate(CORNERS[rays]):
         part = frame.coarser(corner, state)
-        if part.things is not None:
-            part.textures["thing_seen"] = part.things.met(part)
         texture = lit_along_traces(part, part.entries(), inside)
         texture.filter = moderngl.LINEAR, moderngl.LINEAR
         texture.repeat_x = texture.repeat_y = False

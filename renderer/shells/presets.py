@@ -70,6 +70,7 @@ PRESETS = {
             "base": {"colour": [0.1, 0.06, 0.03]},
             "camera": _camera(3.2, 165, 22),
             "sun": _sun(110, 40),
+            "sampling": {"first_places": 6},
         },
     ),
     "teapot_table": Preset(
