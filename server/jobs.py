@@ -20,6 +20,8 @@ from server.settings import Settings
 Status = Literal["queued", "running", "done", "failed", "cancelled"]
 CLOSE_S = 1.0
 """How long running work may take to notice that the server ends."""
+KEPT_BYTES = 1 << 30
+"""Results kept in memory, all together; the newest is kept whatever its size."""
 OVER: frozenset[Status] = frozenset({"done", "failed", "cancelled"})
 
 
@@ -29,6 +31,11 @@ class Result:
 
     files: dict[str, bytes] = field(default_factory=dict)
     numbers: dict[str, Any] = field(default_factory=dict)
+
+    @property
+    def size(self) -> int:
+        """Of its files, bytes."""
+        return sum(len(data) for data in self.files.values())
 
 
 class Job:
@@ -172,11 +179,13 @@ class Jobs:
         self._metrics.jobs.labels(job.kind, outcome).inc()
 
     def _forget(self) -> None:
-        """Drop results that are older than they are kept, and of the rest the oldest beyond the queue's length."""
+        """Drop results that are older than they are kept, and of the rest the oldest beyond so many or so much."""
         now = time.monotonic()
         over = [job for job in self._jobs.values() if job.ended is not None]
-        over.sort(key=lambda job: job.ended or 0.0)
-        surplus = len(over) - self._settings.jobs
+        over.sort(key=lambda job: job.ended or 0.0, reverse=True)
+        held = 0
         for index, job in enumerate(over):
-            if index < surplus or now - (job.ended or now) > self._settings.jobs_kept:
+            held += job.result.size if job.result is not None else 0
+            surplus = index >= self._settings.jobs or (index > 0 and held > KEPT_BYTES)
+            if surplus or now - (job.ended or now) > self._settings.jobs_kept:
                 del self._jobs[job.id]

@@ -64,6 +64,15 @@ class Settings(Model):
         ge=256,
         le=16384 * 16384,
     )
+    max_live_pixels: int = param(
+        32 * 1920 * 1080,
+        label="All views",
+        help="Pixels of all live views together",
+        unit="count",
+        cost="host",
+        ge=256,
+        le=1 << 40,
+    )
     sessions: int = param(
         32, label="Sessions", help="Live views served at once", unit="count", cost="host", ge=1, le=10000
     )

@@ -17,7 +17,7 @@ from fastapi import WebSocket, WebSocketDisconnect
 from pydantic import BaseModel
 from starlette.websockets import WebSocketDisconnected
 
-from renderer.core.errors import InputError, UmbrageError
+from renderer.core.errors import InputError, LimitError, UmbrageError
 from server import protocol
 from server.hub import Hub
 from server.live import Live
@@ -47,6 +47,11 @@ class Stream:
         self._allowance = Allowance(hub.settings.message_rate, time.monotonic())
         self._live: Live | None = None
         self._tasks: set[asyncio.Task[None]] = set()
+
+    @property
+    def pixels(self) -> int:
+        """Of the canvas; none before it is opened."""
+        return 0 if self._live is None else self._live.painter.width * self._live.painter.height
 
     async def run(self) -> None:
         """Serve until the client leaves."""
@@ -127,6 +132,10 @@ class Stream:
 
     def _check_size(self, width: int, height: int) -> None:
         self._hub.check_size(width, height, self._hub.settings.max_stream_pixels)
+        taken = sum(stream.pixels for stream in self._hub.streams if stream is not self)
+        if taken + width * height > self._hub.settings.max_live_pixels:
+            limit = f"{max(0, self._hub.settings.max_live_pixels - taken)} pixels now; more when another view closes"
+            raise LimitError("width", "all live views together have too many pixels", limit)
 
     async def _hello(self, message: protocol.Hello) -> None:
         if self._live is not None:

@@ -143,6 +143,16 @@ async def test_results_are_forgotten_in_time() -> None:
     await jobs.close()
 
 
+async def test_results_are_forgotten_for_their_mass(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Two maps do not fit: the older goes; one that fits in no way is kept until the next."""
+    monkeypatch.setattr("server.jobs.KEPT_BYTES", 150)
+    jobs = Jobs(Settings(), Metrics())
+    for size, known in ((100, [100]), (100, [100]), (20, [100, 20]), (999, [999])):
+        await until(jobs.start("sunlight", lambda job, size=size: Result({"map.tif": bytes(size)})), "done")  # type: ignore[misc]
+        assert [job.result.size for job in jobs.list() if job.result is not None] == known
+    await jobs.close()
+
+
 async def test_closing_ends_what_runs() -> None:
     jobs = Jobs(Settings(), Metrics())
     job = jobs.start("bake", slow)

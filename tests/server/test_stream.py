@@ -6,7 +6,9 @@ from typing import Any
 import numpy as np
 from starlette.testclient import TestClient
 
+from server.app import create_app
 from server.protocol import FrameHeader
+from server.settings import Settings
 from tests.server.fake_session import FakeSession, FakeState, paint
 from tests.server.talk import Talk, pixels
 
@@ -129,6 +131,31 @@ def test_a_resize_redraws_at_the_new_size(client: TestClient, hello: dict[str, A
         assert refused["field"] == "width"
         assert "4096" in refused["allowed"]
         assert talk.silent(0.1)
+
+
+def test_views_with_more_pixels_than_all_may_have_are_refused_until_one_closes(
+    session: FakeSession, settings: Settings, hello: dict[str, Any]
+) -> None:
+    app = create_app(session, settings.model_copy(update={"max_live_pixels": 6000}))
+    with (
+        TestClient(app, base_url="http://127.0.0.1:8000") as client,
+        client.websocket_connect("/api/session") as first,
+        client.websocket_connect("/api/session") as second,
+    ):
+        one, other = Talk(first), Talk(second)
+        one.send(**hello)
+        one.until("idle")
+        other.send(**hello)
+        refused = other.until("error")
+        assert refused["field"] == "width"
+        assert refused["allowed"].startswith(f"{6000 - 64 * 48} pixels")
+        one.send(type="resize", width=70, height=80)
+        one.send(type="resize", width=80, height=80)
+        assert "together" in one.until("error")["message"]
+        one.send(type="resize", width=30, height=30)
+        one.until("idle")
+        other.send(**hello)
+        other.until("welcome")
 
 
 def test_a_large_picture_comes_coarse_at_first_then_as_jpeg_and_then_without_loss(
