@@ -163,8 +163,7 @@ PRESETS = {
             "base": {"colour": [0.1, 0.09, 0.08]},
             "camera": _camera(3.4, 160, 14),
             "sun": _sun(95, 35),
-            "sampling": {"first_places": 2},
-            "shadow": {"close": 2},
+            "sampling": {"first_places": 2}, "shadow": {"close": 2},
         },
     ),
     "fur_growing": Preset(
