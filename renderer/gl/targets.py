@@ -185,7 +185,7 @@ class Accumulator:
 
 
 class ToneMap:
-    """The displayed picture: exposure, tone curve, background, sRGB, eight bits, without dithering."""
+    """The displayed picture: exposure, tone curve, background, sRGB, eight bits, dithered."""
 
     def __init__(self, gl: GL) -> None:
         self._gl = gl
