@@ -78,7 +78,7 @@ class NumberControl extends Control {
     this.bounded = this.minimum !== undefined && this.maximum !== undefined;
     this.logarithmic = this.bounded && this.minimum > 0 && this.maximum / this.minimum > LOG_FROM;
     this.entry = el("input", { id: this.id, type: "text", inputmode: "decimal", class: "entry", autocomplete: "off",
-      on: { change: () => this.commit(), keydown: (event) => this.key(event) } });
+      on: { input: () => { this.typing = true; }, blur: () => { this.typing = false; }, change: () => this.commit(), keydown: (event) => this.key(event) } });
     const unit = el("span", { class: "unit", text: unitOf(node) });
     this.reset.after(el("span", { class: "number" }, this.entry, unit));
     if (this.bounded && !node.umbrage?.plays) this.body(this.track()); // no slider reaches all of time
@@ -121,6 +121,7 @@ class NumberControl extends Control {
 
   /** What was typed goes to the server as it is, which refuses it in words where it must. */
   commit() {
+    this.typing = false;
     const value = numberIn(this.entry.value);
     if (Number.isFinite(value)) this.set(value);
     else this.fail(`“${this.entry.value}” is not a number.`);
@@ -129,6 +130,7 @@ class NumberControl extends Control {
   key(event) {
     if (event.key !== "ArrowUp" && event.key !== "ArrowDown") return;
     event.preventDefault();
+    this.typing = false;
     const size = this.step * (event.shiftKey ? 10 : 1) * (event.key === "ArrowUp" ? 1 : -1);
     this.set(this.rounded(valueAt(this.context.store.document, this.path) + size));
   }
@@ -152,7 +154,8 @@ class NumberControl extends Control {
   }
 
   show(value) {
-    if (document.activeElement !== this.entry || !this.root.classList.contains("refused")) this.entry.value = written(value, this.step);
+    const kept = this.typing || (document.activeElement === this.entry && this.root.classList.contains("refused"));
+    if (!kept) this.entry.value = written(value, this.step);
     if (this.slider) {
       if (!this.slider.matches(":active")) this.slider.value = this.toSlider(value);
       this.slider.setAttribute("aria-valuetext", `${written(value, this.step)} ${unitOf(this.node)}`.trim());

@@ -86,6 +86,10 @@ def test_key_frames_are_added_moved_and_taken_out(open_page: Open, keyed: dict[s
     assert keys(page)[2]["at"] == pytest.approx(7.5, abs=0.1)
     opacity = page.locator("#editor [data-path='course.keys.2.opacity'] input.entry")
     opacity.fill("0.5")
+    # Time that runs, or the server's answer to the change before, must not put the old number back under one's hands.
+    page.evaluate("umbrage.store.change({ time: 1.5 }, 'time')")
+    page.evaluate("new Promise((drawn) => setTimeout(() => requestAnimationFrame(drawn), 200))")
+    assert opacity.input_value() == "0.5"
     opacity.press("Enter")
     assert keys(page)[2]["opacity"] == 0.5
     page.get_by_role("radio", name="Interpolated").check()
