@@ -19,11 +19,10 @@ SEEN: dict[str, Any] = {"kind": "visible_hemisphere"}
 At coarse levels it is too bright, so that filtered combinations keep the share."""
 
 FINE: dict[str, Any] = {
-    "geometry": {"kind": "ray_march", "step": 1.0, "stop": 0.02, "first": 2.5, "pitch": 2},
+    "geometry": {"kind": "ray_march", "step": 1.0, "stop": 0.02},
     "filter": {"kind": "none"},
 }
-"""What the eye's ray costs is paid when the camera moves, and kept while the sun does. In the first sample a ray stands
-for four pixels and takes longer steps: smoothed, it is nearer to the converged picture than a ray a pixel as it is."""
+"""What the eye's ray costs is paid when the camera moves, and kept while the sun does."""
 
 COMBINATIONS = {
     "thesis_degraded": Preset(

@@ -61,7 +61,7 @@ class FirstLook:
         if pitch == 1:
             return smooth_source(state, side), held
         smooth.use()
-        run_fullscreen(self._gl, smooth_source(state, side, pitch), held, values)
+        run_fullscreen(self._gl, smooth_source(state, side), held, values)
         return spread_source(state, side), {**textures, "smooth_lit": smooth.textures[0]}
 
     def release(self) -> None:

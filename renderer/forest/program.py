@@ -61,11 +61,12 @@ uniform float pixel_width;        // m, width of a pixel in a parallel view
 uniform vec2 picture_size;
 uniform vec2 pixel_offset;        // of the sample within its pixel, from the top-left corner
 uniform float ray_pitch;          // pixels a side that share a ray
+uniform float sample_smoothed;    // 1: over three by three rays, as first samples are; 0: not
 uniform float sample_shift;       // number of the sample, which turns the jitter"""
 
 LOOK_DECLARATIONS = """uniform sampler2D looked; // of each block: share of the sun at one of its pixels, and where
 uniform sampler2D lit;    // what was lit so, and its distance in m
-uniform sampler2D smooth_lit; // the same smoothed, and its opacity"""
+uniform sampler2D smooth_lit; // the same smoothed, as the picture has it"""
 
 RAY_OF_PIXEL = """// From sample to sample the low-discrepancy sequence R4 of Roberts 2018; from pixel to pixel
 // the interleaved gradient noise of Jimenez 2014, "Next Generation Post Processing in Call of Duty".
@@ -79,7 +80,11 @@ vec4 pixel_ray(out vec2 corner, out vec3 origin, out vec3 direction) {
     corner = ray_corner(gl_FragCoord.xy);
     camera_ray(corner + pixel_offset, origin, direction);
     float noise = fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715))));
-    return fract(noise * vec4(1.0, 7.0, 13.0, 29.0) + vec4(0.0, 0.5, 0.25, 0.75) + sample_shift * JITTER_TURNS);
+    vec4 jitter = fract(noise * vec4(1.0, 7.0, 13.0, 29.0) + vec4(0.0, 0.5, 0.25, 0.75) + sample_shift * JITTER_TURNS);
+    // What is smoothed over three by three pixels looks at the light at each of nine levels once among them.
+    vec2 third = mod(floor(gl_FragCoord.xy), 3.0);
+    jitter.y = sample_smoothed > 0.0 ? fract((third.x + 3.0 * third.y) * 5.0 / 9.0 + 1.0 / 18.0) : jitter.y;
+    return jitter;
 }
 """
 
@@ -110,7 +115,7 @@ void main() {
     float faded = reached * (1.0 - land_kept(place.xy));
     vec3 light = outgoing(place, vec4(voxel.xyz * 65535.0, 0.0), level, -direction);
 #if LOOK > 0
-    radiance = vec4((reached - faded) * light, reached == 0.0 ? -1.0 : found.x);
+    radiance = vec4(light, reached == 0.0 ? -1.0 : found.x);
 #else
     radiance = before_sky((reached - faded) * light, voxel.w - faded, direction);
 #endif
@@ -134,18 +139,14 @@ void main() {
     vec3 origin, direction;
     pixel_ray(corner, origin, direction);
     vec4 seen = smoothed(ivec2(gl_FragCoord.xy));
-    float faded = seen.a < 0.0 ? 0.0 : 1.0 - land_kept((origin + seen.a * direction).xy);
-    float opacity = texelFetch(traced_voxel, ivec2(gl_FragCoord.xy), 0).w - faded;
-    radiance = %s;
+    float kept = seen.a < 0.0 ? 0.0 : land_kept((origin + seen.a * direction).xy);
+    float opacity = kept * texelFetch(traced_voxel, ivec2(gl_FragCoord.xy), 0).w;
+    radiance = before_sky(opacity * seen.rgb, opacity, direction);
 }"""
 
 SPREAD_BODY = """layout(location = 0) out vec4 radiance;
 void main() {
-    vec2 corner;
-    vec3 origin, direction;
-    pixel_ray(corner, origin, direction);
-    vec4 seen = spread_out(picture_pixel(gl_FragCoord.xy, picture_size));
-    radiance = before_sky(seen.rgb, seen.a, direction);
+    radiance = spread_out(picture_pixel(gl_FragCoord.xy, picture_size));
 }"""
 
 TRACE_SLOTS = ("geometry", "filter")
@@ -193,16 +194,14 @@ def look_source(state: ForestState, look: int) -> Source:
     return _shading(state, ("shadow", "filter"), (), ("forest/first_look.glsl",), LOOK_BODY, look)
 
 
-def smooth_source(state: ForestState, look: int, pitch: int = 1) -> Source:
-    """The fragment stage that smooths what was lit so; it lays it before the sky unless `spread_source` has to bring
-    it to more pixels, `pitch` a side of each."""
-    body = SMOOTH_BODY % ("before_sky(seen.rgb, opacity, direction)" if pitch == 1 else "vec4(seen.rgb, opacity)")
-    return _shading(state, ("filter",), (), ("forest/fading.glsl", "forest/first_look.glsl"), body, look)
+def smooth_source(state: ForestState, look: int) -> Source:
+    """The fragment stage that smooths what was lit so and lays it before the sky."""
+    return _shading(state, ("filter",), (), ("forest/fading.glsl", "forest/first_look.glsl"), SMOOTH_BODY, look)
 
 
 def spread_source(state: ForestState, look: int) -> Source:
-    """The fragment stage that lays what was smoothed, of fewer rays than pixels, before the sky."""
-    return _shading(state, ("filter",), (), ("forest/fading.glsl", "forest/first_look.glsl"), SPREAD_BODY, look)
+    """The fragment stage that brings what was smoothed, of fewer rays than pixels, to every pixel."""
+    return _shading(state, ("filter",), (), ("forest/first_look.glsl",), SPREAD_BODY, look)
 
 
 def _shading(

@@ -80,6 +80,7 @@ class ForestRenderer:
             values |= uniforms(technique, slot) | technique.constants()
         values |= camera_uniforms(state.camera, *size) | self._pixel(state, size)
         values |= {"picture_size": size, "pixel_offset": offset, "sample_shift": float(sample), "ray_pitch": 1.0}
+        values["sample_smoothed"] = float(look != (0, 1))
         textures["scout"] = self._scout(state, baked, size, values, textures)
         rays = (-(-size[0] // look[1]), -(-size[1] // look[1]))
         thrown = values | {"picture_size": rays, "ray_pitch": float(look[1])}
@@ -248,6 +249,7 @@ class ForestRenderer:
         key = (
             state.camera,
             sample,
+            values["sample_smoothed"],
             state.ground.map_seed,
             tuple(state.techniques()[slot] for slot in TRACE_SLOTS),
             baked["terrain"].key,

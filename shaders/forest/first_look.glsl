@@ -55,17 +55,22 @@ float looked_visibility() {
     return sum.x / sum.y;
 }
 
-// What is lit, smoothed over three by three pixels of what lies at about the same distance; its distance stays its own.
+// What is lit, smoothed over three by three pixels of what lies at about the same distance, and its distance [m], which stays its
+// own; of a ray that shows too little to have one, that of the pixels beside it, -1 where they have none.
 vec4 smoothed(ivec2 pixel) {
-    vec4 own = texelFetch(lit, pixel, 0);
+    float own = texelFetch(lit, pixel, 0).a;
     ivec2 last = ivec2(picture_size) - 1;
-    vec4 sum = vec4(0.0, 0.0, 0.0, 1e-9);
+    vec4 sum = vec4(0.0);
+    float weights = 1e-9;
     for (int n = 0; n < 9; n++) {
         ivec2 step = ivec2(n % 3, n / 3) - 1;
         vec4 other = texelFetch(lit, clamp(pixel + step, ivec2(0), last), 0);
-        sum += other.a < 0.0 ? vec4(0.0) : alike(own.a, other.a) * vec4(other.rgb, 1.0);
+        float weight = other.a < 0.0 ? 0.0 : own < 0.0 ? 1.0 : alike(own, other.a);
+        sum += weight * other;
+        weights += weight;
     }
-    return vec4(own.a < 0.0 ? vec3(0.0) : sum.rgb / sum.a, own.a);
+    sum /= weights;
+    return vec4(sum.rgb, own >= 0.0 ? own : sum.a > 0.0 ? sum.a : -1.0);
 }
 
 // What was smoothed of one ray for two by two pixels, linear between the rays: row 0 of `smooth_lit` is its lowest, where the

@@ -158,7 +158,7 @@ def stretched_error(ask: Callable[..., Any], technique: Any) -> float:
     return worst
 
 
-@pytest.mark.parametrize("technique", [RayMarch(step=0.5, stop=0), Slices(count=64)])
+@pytest.mark.parametrize("technique", [RayMarch(first=1, step=0.5, stop=0), Slices(count=64)])
 def test_a_stand_is_as_tall_as_the_place_says(ask: Callable[..., Any], technique: Any) -> None:
     assert stretched_error(ask, technique) < 0.015
 
@@ -170,4 +170,4 @@ def test_a_stand_is_as_tall_as_the_place_says(ask: Callable[..., Any], technique
 ])
 def test_a_wrong_height_is_found(ask: Callable[..., Any], spoil: Callable, right: str, wrong: str) -> None:
     with spoil("forest/world.glsl", right, wrong):
-        assert stretched_error(ask, RayMarch(step=0.5, stop=0)) > 0.05
+        assert stretched_error(ask, RayMarch(first=1, step=0.5, stop=0)) > 0.05

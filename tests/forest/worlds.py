@@ -113,7 +113,7 @@ def map_view(x: float, y: float, width: float) -> dict[str, Any]:
 
 
 PINNED: dict[str, dict[str, Any]] = {
-    "ray_march": {"step": 1.0, "stop": 0.02},
+    "ray_march": {"step": 1.0, "stop": 0.02, "first": 1.0, "pitch": 1},
     "slices": {"count": 32, "correct_opacity": True},
     "horizon_map": {"sectors": 16, "height": 0.5, "softness": 9.0, "strength": 1.0},
     "double_horizon_map": {"sectors": 16, "height_top": 0.75, "height_low": 0.5, "softness": 3.0, "strength": 1.0},

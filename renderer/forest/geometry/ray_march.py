@@ -12,7 +12,11 @@ FIRST_STOP = 0.1
 
 
 class RayMarch(ForestTechnique):
-    """Samples the canopy along each ray, front to back; skips what is empty, stops when nothing shows through."""
+    """Samples the canopy along each ray, front to back; skips what is empty, stops when nothing shows through.
+
+    In a picture's first sample a ray stands for four pixels and takes longer steps: smoothed, that is nearer to the
+    converged picture than a ray a pixel as it is.
+    """
 
     title: ClassVar[str] = "Ray marching"
     caption: ClassVar[str] = "Walks each ray through the canopy: no slices to see at any angle."
@@ -32,18 +36,17 @@ class RayMarch(ForestTechnique):
         0.1, label="Early stop", help="Transmittance below which a ray ends.", unit="ratio", ge=0, le=0.2, step=0.005
     )
     first: float = param(
-        1.0,
+        2.5,
         label="First sample",
-        help="How much longer the steps of a picture's first sample are, which is shown while the camera moves.",
+        help="How much longer the finest level's steps are in a picture's first sample, shown while the camera moves.",
         unit="ratio",
-        cost="host",
         ge=1,
         le=4,
         step=0.25,
     )
 
     pitch: int = param(
-        1,
+        2,
         label="Rays of the first sample",
         help="Pixels a side that share a ray in a picture's first sample, which is smoothed; 1: each has its own.",
         unit="px",
@@ -57,7 +60,7 @@ class RayMarch(ForestTechnique):
         return self.pitch
 
     def first_sample(self) -> RayMarch:
-        """Longer steps, and less to see behind what hides the most: the noise of one sample is far greater."""
+        """Beside longer steps, less to see behind what hides the most: the noise of one sample is far greater."""
         if self.first == 1:
             return self
-        return self.model_copy(update={"step": min(self.first * self.step, 4.0), "stop": max(self.stop, FIRST_STOP)})
+        return self.model_copy(update={"stop": max(self.stop, FIRST_STOP)})

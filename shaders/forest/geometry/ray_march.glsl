@@ -19,9 +19,19 @@ const float SHARP = 0.5;
 // Farthest [m] that a tree's voxels lie from its foot: 8 m along either axis.
 const float CROWN_REACH = 11.4;
 
+// In a smoothed first sample, steps grow by TIRED each from the EVEN-th on, to half as long again: few rays go that far, but every
+// one of a block of pixels waits for its last.
+const float EVEN = 16.0;
+const float TIRED = 0.1;
+
+// Longest step [voxels of the finest level] that a first sample's longer steps come to: coarser levels have long ones anyway.
+const float LENGTHENED = 4.0;
+
 // Length of a step at a level [m].
 float step_at(float scale, float climb) {
-    return geometry_step * voxel_size * min(scale, max(STEP_LAYERS / max(abs(climb), 1e-3), 1.0));
+    float even = geometry_step * min(scale, max(STEP_LAYERS / max(abs(climb), 1e-3), 1.0));
+    float first = sample_shift == 0.0 ? min(geometry_first * geometry_step, LENGTHENED) : 0.0;
+    return voxel_size * max(even, first);
 }
 
 // Formulas g: T = 2^-(sum of tau), tau = -log2(1 - alpha) ds / voxel. A sample stands for the step around it, which begins jitter.x of
@@ -33,6 +43,7 @@ void geometry_trace(vec3 origin, vec3 direction, float t, vec4 jitter, inout Eve
     float closed = -log2(max(geometry_stop, 1e-6));
     // A ray that comes down to the lowest land in reach is opaque in the end: once it has its place, nothing more is asked of it.
     bool ends = origin.z + scene_reach * direction.z < 0.0;
+    float grows = sample_smoothed > 0.0 ? TIRED : 0.0;
     float depth = 0.0;
     float previous = t;
     float before = origin.z + t * direction.z - ground_height(origin.xy + t * direction.xy);
@@ -45,7 +56,7 @@ void geometry_trace(vec3 origin, vec3 direction, float t, vec4 jitter, inout Eve
         vec3 p = origin + t * direction;
         vec3 ground = ground_at(p.xy);
         float climb = direction.z - dot(ground.yz, direction.xy);
-        float ds = step_at(scale, climb);
+        float ds = step_at(scale, climb) * (1.0 + grows * clamp(float(i) - EVEN, 0.0, 5.0));
         above = p.z - ground.x;
         float gap = above - canopy_top;
         bool over = gap > 0.0;

@@ -26,12 +26,12 @@ def budget(step: float) -> float:
 @pytest.mark.parametrize("direction", DOWN)
 @pytest.mark.parametrize("step", [0.25, 1.0, 2.0, 4.0])
 def test_a_slab_lets_through_what_its_length_says(ask: Ask, direction: tuple[float, ...], step: float) -> None:
-    assert slab_error(ask, RayMarch(step=step, stop=0), direction) < budget(step)
+    assert slab_error(ask, RayMarch(first=1, step=step, stop=0), direction) < budget(step)
 
 
 def test_a_slab_on_a_slope_too(ask: Ask) -> None:
     for slope in (0.5, -0.5):
-        assert slab_error(ask, RayMarch(step=1, stop=0), (0.5, 0.3, -0.8), slope) < budget(1)
+        assert slab_error(ask, RayMarch(first=1, step=1, stop=0), (0.5, 0.3, -0.8), slope) < budget(1)
 
 
 @pytest.mark.parametrize(("right", "wrong"), [
@@ -41,14 +41,14 @@ def test_a_slab_on_a_slope_too(ask: Ask) -> None:
 ])
 def test_a_wrong_transmittance_is_found(ask: Ask, spoil: Callable, right: str, wrong: str) -> None:
     with spoil("forest/geometry/ray_march.glsl", right, wrong):
-        assert slab_error(ask, RayMarch(step=2, stop=0), DOWN[1]) > budget(2)
+        assert slab_error(ask, RayMarch(first=1, step=2, stop=0), DOWN[1]) > budget(2)
 
 
 def test_each_ray_meets_as_many_samples_as_its_twin_counts(ask: Ask) -> None:
     """Rising rays from inside the slab leave it through the top: opacity is 1 - (1 - alpha)^(samples met)."""
     jitter = strata()[1].astype(np.float64)
     rise = 0.6
-    found = trace(ask, RayMarch(step=1, stop=0), (0, 0, 7.0), (0.8, 0, rise), worlds.uniform(ALPHA))
+    found = trace(ask, RayMarch(first=1, step=1, stop=0), (0, 0, 7.0), (0.8, 0, rise), worlds.uniform(ALPHA))
     first = 7.0 + jitter * VOXEL * rise
     samples = np.floor((20.0 - first) / (VOXEL * rise)) + 1
     clear = np.abs((20.0 - first) / (VOXEL * rise) % 1 - 0.5) < 0.49  # beside the top float32 may say either
@@ -65,7 +65,7 @@ def layered(safe: int) -> dict[str, np.ndarray]:
 
 
 def skipping_error(ask: Ask, safe: int) -> float:
-    found = trace(ask, RayMarch(stop=0, step=0.5), (0, 0, 20.0), (0.3, 0.2, -0.9), layered(safe))
+    found = trace(ask, RayMarch(first=1, stop=0, step=0.5), (0, 0, 20.0), (0.3, 0.2, -0.9), layered(safe))
     length = np.linalg.norm((0.3, 0.2, 0.9)) / 0.9
     return abs(float(found[:, 0].mean()) - (1 - ALPHA * 4 / 255) ** (4 * length))
 
@@ -87,7 +87,7 @@ def depths_met(ask: Ask, level: int, step: float, pattern: dict[str, np.ndarray]
     geometry_trace(vec3(0.0, 0.0, {CANOPY_HEIGHT:.1f}), vec3(0.0, 0.0, -1.0), 0.0, vec4(jitter, xi, 0.5, 0.5), event);
     result = event.place.zw;"""
     found = ask([*FILES[:2], "forest/geometry/ray_march.glsl"], body, {"xi": xi, "jitter": jitter}, 2,
-                pattern=pattern, techniques={"geometry": RayMarch(step=step, stop=0)},
+                pattern=pattern, techniques={"geometry": RayMarch(first=1, step=step, stop=0)},
                 declarations=f"float filter_level(float footprint) {{ return {level}.0; }}").astype(np.float64)
     return np.where(found[:, 1] >= 0, CANOPY_HEIGHT - found[:, 0], np.nan)
 
@@ -163,7 +163,7 @@ def bare_hills_missed(ask: Ask) -> float:
     geometry_trace(origin, direction, 0.0, vec4(0.5), event);
     result = event.place.w == GROUND ? dot(event.place.xyz - origin, direction) : -1.0;"""
     found = ask([*FILES, "forest/geometry/ray_march.glsl"], body, {"origin": origin, "direction": direction},
-                terrain=worlds.ground(z[None, :], 0.0), techniques={"geometry": RayMarch(step=1)})[:, 0]
+                terrain=worlds.ground(z[None, :], 0.0), techniques={"geometry": RayMarch(first=1, step=1)})[:, 0]
     return float((np.abs(found - exact) > 1.5).mean())
 
 
@@ -178,15 +178,15 @@ def test_a_skip_through_a_hill_is_found(ask: Ask, spoil: Callable) -> None:
 
 
 def test_early_stop_closes_a_ray_and_nothing_else(ask: Ask) -> None:
-    found = trace(ask, RayMarch(step=1, stop=0.2), (0, 0, 20.0), (0.8, 0, -0.6), worlds.uniform(ALPHA))
+    found = trace(ask, RayMarch(first=1, step=1, stop=0.2), (0, 0, 20.0), (0.8, 0, -0.6), worlds.uniform(ALPHA))
     assert (found[:, 0] == 0).all(), "the ground is seen through 8 % only"
     assert (found[:, 1] == 1).all()
-    seen = trace(ask, RayMarch(step=1, stop=0.05), (0, 0, 20.0), (0.8, 0, -0.6), worlds.uniform(ALPHA))
+    seen = trace(ask, RayMarch(first=1, step=1, stop=0.05), (0, 0, 20.0), (0.8, 0, -0.6), worlds.uniform(ALPHA))
     assert seen[:, 0].mean() == pytest.approx((1 - ALPHA / 255) ** (32 / 0.6), abs=budget(1))
 
 
 def test_light_falls_on_the_first_matter_of_an_opaque_canopy(ask: Ask) -> None:
-    found = trace(ask, RayMarch(step=0.25), (0, 0, 20.0), (0, 0, -1), worlds.uniform(255))
+    found = trace(ask, RayMarch(first=1, step=0.25), (0, 0, 20.0), (0, 0, -1), worlds.uniform(255))
     assert (found[:, 3] > 20 - 2 * VOXEL).all()
     assert (found[:, 2] <= 1).all()
 
