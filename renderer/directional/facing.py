@@ -10,8 +10,9 @@ from renderer.directional.casting import AXES, face_frame, face_middles
 from renderer.directional.hemisphere import Hemisphere
 from renderer.world.camera import Orthographic, pose
 
-GRID = 65
-"""Places along a face's side at which directions are looked at."""
+GRID, NEAR_GRID = 33, 65
+"""Places along a face's side at which directions are looked at; the latter within half a side of it, where they turn
+faster from place to place."""
 
 
 def side(face: int) -> float:
@@ -36,7 +37,9 @@ def directions_needed(camera: Any, face: int, box: np.ndarray, layout: Hemispher
     """Numbers of the directions of a face's hemisphere from which its texels may be asked: those round each direction
     that a texel is seen from, with one more on every side, since a pixel's ray comes from between them."""
     at = pose(camera)
-    away = face_middles(box, face, GRID)
+    axis = AXES[face][2]
+    near = abs(at.eye[axis] - box[face % 2, axis]) < np.ptp(box, axis=0).max() / 2
+    away = face_middles(box, face, NEAR_GRID if near else GRID)
     to_eye = -at.forward[None] if isinstance(camera, Orthographic) else at.eye - away
     u, v, out = (to_eye @ face_frame(face).T).T
     row = np.floor(np.arctan2(np.maximum(out, 0), np.hypot(u, v)) / layout.step - 0.5).astype(int)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -18,6 +19,7 @@ from renderer.world.camera import CAMERA_DECLARATIONS
 from renderer.world.sky import SKY_DECLARATIONS
 
 if TYPE_CHECKING:
+    from renderer.core.technique import Arrays
     from renderer.directional.state import DirectionalState
     from renderer.directional.technique import DirectionalTechnique
 
@@ -154,7 +156,7 @@ class Variant:
     Attributes:
         sky: whether the sky is behind. texels: of a face's side. directions: of a face's hemisphere.
         selection_count: points that a texel takes, 1 or 4. per_pixel: whether pixels choose, and not texels.
-        shadow_blocks: texels of a point's shadow code. lights: macros of lamp and surroundings.
+        shadow_blocks: texels of a point's shadow code. lights: macros of lamp, surroundings and material.
     """
 
     sky: bool
@@ -181,8 +183,8 @@ class Variant:
         }
 
 
-def variant_of(state: DirectionalState, shadow_blocks: int) -> Variant:
-    """What of a state is compiled in."""
+def variant_of(state: DirectionalState, shadow_blocks: int, baked: Mapping[str, Arrays]) -> Variant:
+    """What of a state and of its bakes' arrays is compiled in."""
     chosen = state.selection
     return Variant(
         state.view.background == "sky",
@@ -191,7 +193,11 @@ def variant_of(state: DirectionalState, shadow_blocks: int) -> Variant:
         chosen.count,
         chosen.per_pixel,
         shadow_blocks,
-        (*defines(state.lamp, "lamp").items(), *environment_macros(state).items()),
+        (
+            *defines(state.lamp, "lamp").items(),
+            *environment_macros(state).items(),
+            *((name, str(value)) for name, value in state.light.macros(baked).items()),
+        ),
     )
 
 

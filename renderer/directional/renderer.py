@@ -100,7 +100,7 @@ class DirectionalRenderer:
         box = np.asarray(arrays["visibility"]["box"], np.float64)
         faces = faces_seen(state.camera, box)
         textures, blocks = self._what_is_lit(state, baked, arrays)
-        variant = variant_of(state, blocks)
+        variant = variant_of(state, blocks, arrays)
         values = self._values(state, arrays, box, faces, size, offset)
         size_of = size if variant.per_pixel else (3 * variant.texels, variant.texels)
         atlas = self._atlas(size_of, variant.selection_count, variant.per_pixel)
@@ -121,7 +121,7 @@ class DirectionalRenderer:
         arrays = {name: entry.arrays for name, entry in baked.items()}
         box = np.asarray(arrays["visibility"]["box"], np.float64)
         textures, blocks = self._what_is_lit(state, baked, arrays)
-        variant = replace(variant_of(state, blocks), selection_count=1)
+        variant = replace(variant_of(state, blocks, arrays), selection_count=1)
         values = self._values(state, arrays, box, [], (1, 1), (0.5, 0.5))
         count = len(arrays["visibility"]["used"])
         numbers = np.minimum(np.arange(-(-count // ROW) * ROW, dtype=np.uint32), count - 1).reshape(-1, ROW, 1)

@@ -41,7 +41,7 @@ class Seen:
         self._directions = directions
         self._where = np.full((6, directions), -1, np.int32)
         self._holds: list[tuple[int, int] | None] = []
-        self._asked: list[int] = []
+        self._asked = np.zeros(0, np.int64)
         self._turn = 0
         self._layers: Any = None
         self._depths: Any = None
@@ -81,9 +81,9 @@ class Seen:
         if len(pairs) > len(self._holds):
             self._make(len(pairs))
             missing = pairs
-        free = sorted(range(len(self._holds)), key=lambda place: self._asked[place])
+        free = np.argsort(self._asked, kind="stable")[: len(missing)].tolist()
         side = self._texels
-        for place, pair in zip(free, missing, strict=False):
+        for place, pair in zip(free, missing, strict=True):
             if (before := self._holds[place]) is not None:
                 self._where[before] = -1
             numbers = np.ascontiguousarray(layer(self._visibility, *pair), np.uint32)
@@ -125,4 +125,4 @@ class Seen:
         self._layers = self._gl.ctx.texture_array(shape, 1, dtype="u4", alignment=1)
         self._depths = self._gl.ctx.texture_array(shape, 1, dtype="u2", alignment=1)
         self._where[:] = -1
-        self._holds, self._asked = [None] * room, [0] * room
+        self._holds, self._asked = [None] * room, np.zeros(room, np.int64)

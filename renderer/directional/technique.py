@@ -30,6 +30,10 @@ class DirectionalTechnique(Technique):
         """Values of `extra_declarations`."""
         return {}
 
+    def macros(self, baked: Mapping[str, Arrays]) -> Mapping[str, int]:
+        """What of the bakes is compiled in, by macro."""
+        return {}
+
     def textures_key(self, baked_keys: Mapping[str, str]) -> Hashable:
         """What `textures_of` depends on, beside the kind: names of files, keys of bakes; no live parameter."""
         return None

@@ -6,7 +6,7 @@
 // Symbols: theta from the normal, phi from the tangent [rad]; values [sr-1]. Azimuths wrap; beyond the last theta its
 // value stands.
 
-const int TABLE_ANGLES = 0, TABLE_DIFFERENCE = 1, TABLE_HALF = 2;
+// TABLE_COORDINATES: 0 angles, 1 with the difference of azimuths, 2 by the half vector. TABLE_VIEWS: view nodes, 2 or 4.
 const float TABLE_RIGHT_ANGLE = 1.57079632679490;
 
 // Angle of (x, y), y not negative, to float32's precision (Cephes, atanf); a driver's own may be off by 1e-4.
@@ -34,19 +34,19 @@ float table_theta(vec3 direction) {
 vec4 table_place(vec3 view, vec3 light) {
     view = normalize(vec3(view.xy, max(view.z, 0.0)));
     light = normalize(vec3(light.xy, max(light.z, 0.0)));
-    if (table_coordinates == TABLE_HALF) {
-        vec3 half_way = normalize(view + light);
-        float level = length(half_way.xy);
-        vec2 outward = level > 0.0 ? half_way.xy / level : vec2(1.0, 0.0);
-        vec3 turned = vec3(dot(light, vec3(half_way.z * outward, -level)),
-                           dot(light.xy, vec2(-outward.y, outward.x)), dot(light, half_way));
-        return vec4(sqrt(table_theta(half_way) / TABLE_RIGHT_ANGLE), 0.0, table_theta(turned), table_azimuth(turned.xy));
-    }
-    if (table_coordinates == TABLE_DIFFERENCE) {
-        vec2 turned = vec2(dot(view.xy, light.xy), view.x * light.y - view.y * light.x);
-        return vec4(table_theta(view), 0.0, table_theta(light), table_azimuth(turned));
-    }
+#if TABLE_COORDINATES == 2
+    vec3 half_way = normalize(view + light);
+    float level = length(half_way.xy);
+    vec2 outward = level > 0.0 ? half_way.xy / level : vec2(1.0, 0.0);
+    vec3 turned = vec3(dot(light, vec3(half_way.z * outward, -level)),
+                       dot(light.xy, vec2(-outward.y, outward.x)), dot(light, half_way));
+    return vec4(sqrt(table_theta(half_way) / TABLE_RIGHT_ANGLE), 0.0, table_theta(turned), table_azimuth(turned.xy));
+#elif TABLE_COORDINATES == 1
+    vec2 turned = vec2(dot(view.xy, light.xy), view.x * light.y - view.y * light.x);
+    return vec4(table_theta(view), 0.0, table_theta(light), table_azimuth(turned));
+#else
     return vec4(table_theta(view), table_azimuth(view.xy), table_theta(light), table_azimuth(light.xy));
+#endif
 }
 
 // Numbers of the nodes before and after a place on an axis, and how far it is from one to the other.
@@ -78,7 +78,7 @@ vec3 table_reflectance(vec3 view, vec3 light) {
     ivec2 theta_o = table_between(0, place.x, share.x), phi_o = table_between(1, place.y, share.y);
     ivec2 theta_l = table_between(2, place.z, share.z), phi_l = table_between(3, place.w, share.w);
     vec3 sum = vec3(0.0);
-    for (int number = 0; number < table_views; number++) {
+    for (int number = 0; number < TABLE_VIEWS; number++) {
         bool second_theta = (number & 1) == 1, second_phi = number > 1;
         int tile = (second_theta ? theta_o.y : theta_o.x) * table_nodes.y + (second_phi ? phi_o.y : phi_o.x);
         float weight = (second_theta ? share.x : 1.0 - share.x) * (second_phi ? share.y : 1.0 - share.y);

@@ -7,6 +7,7 @@ of the node in it, or the next after it, gives the interval and the place in it,
 
 from __future__ import annotations
 
+import functools
 import math
 from typing import Any
 
@@ -21,9 +22,7 @@ BINS = 4096
 SIDE = 16384
 """Texels that the tiles may be long together: the least that OpenGL 4 allows."""
 
-DECLARATIONS = """uniform int table_coordinates;    // of renderer/world/brdf.py's AXES, counted from 0
-uniform int table_views;          // neighbouring view nodes: 4 or 2
-uniform ivec4 table_nodes;        // of each axis
+DECLARATIONS = """uniform ivec4 table_nodes;        // of each axis
 uniform int table_across;         // tiles in a row
 uniform vec4 table_axes[4];       // first node; period, or 0; last node; bins per unit"""
 
@@ -34,6 +33,12 @@ BRIGHTEST = 65504.0
 
 
 def ruler(nodes: np.ndarray, period: float) -> tuple[np.ndarray, float]:
+    """As `_ruler`, remembered: every frame asks."""
+    return _ruler(np.asarray(nodes, np.float64).tobytes(), float(period))
+
+
+@functools.lru_cache(maxsize=64)
+def _ruler(told: bytes, period: float) -> tuple[np.ndarray, float]:
     """Bins (n, 4) of an axis and how many there are per unit.
 
     A bin holds the interval's number and slope before its node, the node's place counted from the first node, and the
@@ -42,6 +47,7 @@ def ruler(nodes: np.ndarray, period: float) -> tuple[np.ndarray, float]:
     Raises:
         LimitError: nodes too close to each other.
     """
+    nodes = np.frombuffer(told)
     ends = np.append(nodes - nodes[0], period) if period else nodes - nodes[0]
     if len(ends) == 1:
         return np.array([[0.0, 1.0, 1.0, 0.0]]), 0.0
@@ -92,13 +98,19 @@ def rulers(table: BrdfTable) -> np.ndarray:
     return found
 
 
+def table_macros(table: BrdfTable) -> dict[str, int]:
+    """`TABLE_COORDINATES`, of renderer/world/brdf.py's AXES, counted from 0; `TABLE_VIEWS`, neighbouring view nodes."""
+    return {
+        "TABLE_COORDINATES": ORDER.index(table.coordinates),
+        "TABLE_VIEWS": 4 if len(table.nodes[1]) > 1 else 2,
+    }
+
+
 def table_uniforms(table: BrdfTable) -> dict[str, Any]:
     """Values of `DECLARATIONS`."""
     periods = PERIODS[table.coordinates]
     axes = [(nodes[0], period, nodes[-1], ruler(nodes, period)[1]) for nodes, period in zip(table.nodes, periods)]
     return {
-        "table_coordinates": ORDER.index(table.coordinates),
-        "table_views": 4 if len(table.nodes[1]) > 1 else 2,
         "table_nodes": tuple(len(nodes) for nodes in table.nodes),
         "table_across": tiles_across(table.values.shape),
         "table_axes": np.array(axes),

@@ -9,7 +9,7 @@ from renderer.core.params import param
 from renderer.core.technique import Arrays, Bake
 from renderer.directional.brdf.materials import brdf_bake, table_of
 from renderer.directional.brdf.resident import DECLARATIONS as TABLE_DECLARATIONS
-from renderer.directional.brdf.resident import table_uniforms
+from renderer.directional.brdf.resident import table_macros, table_uniforms
 from renderer.directional.environment_light import SHARPEST, level_of
 from renderer.directional.environments import DECLARATIONS, environment_bake
 from renderer.directional.lamp import LAMP_DECLARATIONS, lamp_values
@@ -92,6 +92,11 @@ class Combined(DirectionalTechnique):
         table = table_uniforms(table_of(baked["brdf"])) if self.surface == "measured" else {}
         values = table | lamp_values(state.lamp, baked) | surroundings(state, baked)
         return values | {"light_level": level_of(self.mirror_shininess)}
+
+    def macros(self, baked: Mapping[str, Arrays]) -> Mapping[str, int]:
+        """How the table's axes count, where it is used."""
+        none = {"TABLE_COORDINATES": 0, "TABLE_VIEWS": 2}
+        return table_macros(table_of(baked["brdf"])) if self.surface == "measured" else none
 
     def textures_key(self, baked_keys: Mapping[str, str]) -> Hashable:
         """The table, how it is kept, and the picture."""

@@ -10,7 +10,7 @@ import numpy as np
 from renderer.core.params import param
 from renderer.core.technique import Arrays, Bake
 from renderer.directional.brdf.materials import brdf_bake, table_of
-from renderer.directional.brdf.resident import DECLARATIONS, plane, rulers, table_uniforms
+from renderer.directional.brdf.resident import DECLARATIONS, plane, rulers, table_macros, table_uniforms
 from renderer.directional.lamp import LAMP_DECLARATIONS, lamp_values
 from renderer.directional.technique import DirectionalTechnique
 
@@ -56,6 +56,10 @@ class MeasuredBrdf(DirectionalTechnique):
     def constants(self, state: Any, baked: Mapping[str, Arrays]) -> dict[str, Any]:
         """How the table lies in its texture, and where the lamp is."""
         return table_uniforms(table_of(baked["brdf"])) | lamp_values(state.lamp, baked)
+
+    def macros(self, baked: Mapping[str, Arrays]) -> Mapping[str, int]:
+        """How the table's axes count."""
+        return table_macros(table_of(baked["brdf"]))
 
     def textures_key(self, baked_keys: Mapping[str, str]) -> Hashable:
         """The table, and how it is kept."""

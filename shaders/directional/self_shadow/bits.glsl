@@ -5,9 +5,16 @@
 // about its middle by self_shadow_sharpness (1), after Green 2007, which puts the edge where the blend is a half; the
 // thesis does not say.
 
-float bits_cell(uint point, int row, int azimuth) {
-    int number = hemisphere_index(row, azimuth, self_shadow_azimuths, self_shadow_elevations);
-    return float((shadow_word(point, number >> 5) >> uint(number & 31)) & 1u);
+float bits_cell(uvec4 words, int number) {
+    return float((words[(number >> 5) & 3] >> uint(number & 31)) & 1u);
+}
+
+// Two neighbours of a row, or twice the zenith. The azimuths of a row divide 128: all of it is in one block of words.
+vec2 bits_pair(uint point, int row, int azimuth) {
+    int first = hemisphere_index(row, azimuth, self_shadow_azimuths, self_shadow_elevations);
+    int second = hemisphere_index(row, azimuth + 1, self_shadow_azimuths, self_shadow_elevations);
+    uvec4 words = shadow_words(point, first >> 7);
+    return vec2(bits_cell(words, first), bits_cell(words, second));
 }
 
 float self_shadow_visibility(Surfel surfel, vec3 towards) {
@@ -18,12 +25,11 @@ float self_shadow_visibility(Surfel surfel, vec3 towards) {
     vec2 from = vec2(max(place.x - 0.5, 0.0), place.y);
     ivec2 first = ivec2(floor(from));
     vec2 share = from - vec2(first);
-    float low = mix(bits_cell(surfel.index, first.x, first.y), bits_cell(surfel.index, first.x, first.y + 1), share.y);
-    float high = mix(bits_cell(surfel.index, first.x + 1, first.y), bits_cell(surfel.index, first.x + 1, first.y + 1),
-                     share.y);
-    float lit = clamp(0.5 + self_shadow_sharpness * (mix(low, high, share.x) - 0.5), 0.0, 1.0);
+    vec2 low = bits_pair(surfel.index, first.x, first.y), high = bits_pair(surfel.index, first.x + 1, first.y);
+    vec2 sides = mix(low, high, share.x);
+    float lit = clamp(0.5 + self_shadow_sharpness * (mix(sides.x, sides.y, share.y) - 0.5), 0.0, 1.0);
 #else
-    float lit = bits_cell(surfel.index, int(place.x), int(place.y + 0.5));
+    float lit = bits_pair(surfel.index, int(place.x), int(place.y + 0.5)).x;
 #endif
     return local.z > 0.0 ? lit : 0.0;
 }

@@ -128,7 +128,8 @@ def _probed(
             uniforms=values,
             textures=made,
             declarations="\n".join([*declarations(technique), SKY_DECLARATIONS]),
-            defines={**defines(technique, "light"), **defines(lamp, "lamp"), "ENVIRONMENT_SKY": int(now is not None)},
+            defines={**defines(technique, "light"), **technique.macros(baked), **defines(lamp, "lamp"),
+                     "ENVIRONMENT_SKY": int(now is not None)},
         )
     finally:
         for texture in made.values():

@@ -19,7 +19,7 @@ from renderer.directional.brdf.materials import (
     brdf_bake,
     table_of,
 )
-from renderer.directional.brdf.resident import DECLARATIONS, table_uniforms
+from renderer.directional.brdf.resident import DECLARATIONS, table_macros, table_uniforms
 from renderer.directional.lamp import Lamp
 from renderer.directional.light.measured_brdf import MeasuredBrdf
 from renderer.gl.context import GL
@@ -53,9 +53,9 @@ def drawn(thread: GLThread, arrays: Mapping[str, Any], storage: str = "float", s
         made = technique.textures_of(gl, arrays)
         try:
             named = {f"light_{name}": texture for name, texture in made.items()}
-            values = table_uniforms(table_of(arrays["brdf"]))
-            return probe(gl, [FILE], "table_reflectance(view, light)", pairs, 3, uniforms=values, textures=named,
-                         declarations=DECLARATIONS)
+            table = table_of(arrays["brdf"])
+            return probe(gl, [FILE], "table_reflectance(view, light)", pairs, 3, uniforms=table_uniforms(table),
+                         textures=named, declarations=DECLARATIONS, defines=table_macros(table))
         finally:
             for texture in made.values():
                 texture.release()
