@@ -18,10 +18,6 @@ class PositionCorrected(DirectionalTechnique):
     per_pixel: ClassVar[bool] = True
 
     kind: Literal["position_corrected"] = "position_corrected"
-    steps: int = param(
-        64, label="Steps", help="How many texels a ray runs through at most in each direction.", unit="count",
-        cost="build", ge=8, le=256,
-    )
     reach: float = param(
         0.4, label="Reach",
         help="How far a ray may pass behind a texel that no direction sees past, in texels of the longest side.",

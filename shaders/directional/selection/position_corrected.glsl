@@ -6,11 +6,12 @@
 // Where it was never behind anything before, no other direction could know better. Else something hides the ray from
 // this direction, and the next is asked: the four of the face that the ray comes in by, then those of the other faces
 // that look towards the eye. Of the four, the texel whose line lies nearest the ray there gives the point.
-// Symbols: SELECTION_STEPS, texels of a relief that a ray runs through at most; selection_reach, how far the ray may pass
-// behind a texel that no direction sees past [texels of the longest side]; range, metres along the ray between which points may lie.
+// Symbols: selection_reach, how far the ray may pass behind a texel that no direction sees past [texels of the longest side];
+// range, metres along the ray between which points may lie.
 // No claim: what no direction round the ray sees stays unseen.
 
 const float NOWHERE = 1.0e30;
+const int CROSSED = 2 * TEXELS; // of a relief that a ray runs through: none crosses more
 const float LEVEL = 1.0; // texels of depth within which two texels count as one surface
 
 // What is read behind a loop is carried from turn to turn in it, here and below: drivers that draw on the CPU compute all
@@ -137,7 +138,7 @@ void selection_points(int face, vec3 place, vec3 to_eye, vec2 range, out uvec4 p
                 t = max(until, t);
                 at += borders.x < borders.y ? vec2(onward.x, 0.0) : vec2(0.0, onward.y);
                 count++;
-            } while (!hit && t < stop && count < SELECTION_STEPS);
+            } while (!hit && t < stop && count < CROSSED);
             news = news || hit;
             sure = sure || (!hidden && (hit || t >= stop));
             look_on(looks);

@@ -49,3 +49,9 @@ def test_a_ray_without_parallax_is_found(thread: GLThread, spoil: Callable) -> N
     ):
         drawn = draw(thread, {"selection": CORRECTED, "camera": orbit(30, 25)})
     assert drawn.wrong > 0.05
+
+
+def test_a_ray_that_is_given_up_is_found(thread: GLThread, spoil: Callable) -> None:
+    with spoil("directional/selection/position_corrected.glsl", "CROSSED = 2 * TEXELS", "CROSSED = TEXELS / 8"):
+        drawn = draw(thread, {"selection": CORRECTED, "camera": orbit(200, 8)})
+    assert drawn.wrong > 0.05
