@@ -1,13 +1,12 @@
-"""Parallel rays from the texels of a box's face to the points of the cloud (Embree: Wald et al. 2014)."""
+"""Parallel rays from the texels of a box's face to the points of the cloud."""
 
 from __future__ import annotations
 
 import numpy as np
-from embreex.mesh_construction import TriangleMesh
-from embreex.rtcore_scene import EmbreeScene
 
 from renderer.core.technique import Arrays
 from renderer.directional.cloud import part_of
+from renderer.directional.mesh_rays import MeshRays
 
 NONE = 0xFFFFFFFF
 """Number of the point that a texel without any sees."""
@@ -45,12 +44,8 @@ class Caster:
 
     def __init__(self, subject: Arrays, cloud: Arrays) -> None:
         self.box = np.asarray(subject["box"])
-        corners = subject["vertices"][subject["faces"]] - self.box.mean(axis=0)
         self._cuts, self._first = cloud["cuts"], cloud["first"]
-        self._scene = EmbreeScene()
-        # Embree keeps no copy: the mesh and its buffer must live as long as the scene.
-        self._corners = np.ascontiguousarray(corners, np.float32)
-        self._mesh = TriangleMesh(self._scene, self._corners)
+        self._rays = MeshRays(subject["vertices"], subject["faces"])
 
     def points(self, origins: np.ndarray, towards: np.ndarray) -> np.ndarray:
         """Numbers (N,) uint32 of the points that are seen from places in a direction.
@@ -58,10 +53,8 @@ class Caster:
         Args:
             origins: (N, 3) [m]. towards: (3,) unit vector of the rays.
         """
-        begin = np.ascontiguousarray(origins - self.box.mean(axis=0), np.float32)
-        found = self._scene.run(begin, np.ascontiguousarray(np.broadcast_to(towards, begin.shape), np.float32),
-                                query="INTERSECT", output=True)
-        seen = np.full(len(begin), NONE, np.uint32)
+        found = self._rays.met(origins, towards)
+        seen = np.full(len(origins), NONE, np.uint32)
         hit = np.flatnonzero(found["primID"] >= 0)
         triangle = found["primID"][hit]
         first = self._first[triangle, 0]

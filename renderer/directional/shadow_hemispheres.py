@@ -1,8 +1,7 @@
 """Shadow hemispheres by ray casting: which directions of light each point of the cloud sees past the subject.
 
 Porquet 2005, section on self-shadowing: a point's hemisphere about its normal is cut into directions, and each holds
-1 where light from there arrives, 0 where the subject is in its way. Rays are cast by Embree (Wald et al. 2014) in
-float32.
+1 where light from there arrives, 0 where the subject is in its way.
 """
 
 from __future__ import annotations
@@ -11,12 +10,11 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from embreex.mesh_construction import TriangleMesh
-from embreex.rtcore_scene import EmbreeScene
 
 from renderer.core.technique import Arrays
 from renderer.directional.frames import frames, quantised
 from renderer.directional.hemisphere import Hemisphere, hemisphere_of
+from renderer.directional.mesh_rays import MeshRays
 
 Progress = Callable[[float, str], None]
 
@@ -35,23 +33,13 @@ class Caster:
     """
 
     def __init__(self, vertices: np.ndarray, faces: np.ndarray) -> None:
-        self._middle = (vertices.min(axis=0) + vertices.max(axis=0)) / 2
         self.lift = LIFT * float(np.linalg.norm(np.ptp(vertices, axis=0)))
-        self._scene = EmbreeScene()
-        # Kept: Embree reads the mesh's own memory.
-        self._mesh = TriangleMesh(
-            self._scene, (vertices - self._middle).astype(np.float32), np.ascontiguousarray(faces, np.int32)
-        )
+        self._rays = MeshRays(vertices, faces)
 
     def open(self, positions: np.ndarray, normals: np.ndarray, directions: np.ndarray) -> np.ndarray:
         """Whether nothing lies along directions (N, k, 3) from positions (N, 3) [m] a little off along normals (N, 3):
         (N, k) booleans."""
-        count, each = directions.shape[:2]
-        starts = (positions - self._middle + self.lift * normals).astype(np.float32)
-        origins = np.repeat(starts, each, axis=0)
-        rays = np.ascontiguousarray(directions.reshape(-1, 3), np.float32)
-        met = self._scene.run(origins, rays, query="OCCLUDED")
-        return np.asarray(met.reshape(count, each) < 0)
+        return ~self._rays.blocked(positions + self.lift * normals, directions)
 
 
 def world_directions(normals: np.ndarray, local: np.ndarray) -> np.ndarray:
