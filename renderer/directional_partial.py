@@ -21,6 +21,7 @@ from renderer.directional.casting import NONE, Caster, face_frame, face_middles
 from renderer.directional.facing import directions_needed, faces_seen
 from renderer.directional.hemisphere import hemisphere_of
 from renderer.directional.index_code import packed
+from renderer.directional_weights import kept
 from renderer.gl.targets import Target
 from renderer.study.sweep import Drawn
 from renderer.truth import POSITIONS
@@ -122,12 +123,7 @@ class Partial:
 
     def _keep(self, key: Hashable, make: Callable[[], Arrays], layers: bool = False) -> Arrays:
         store, most = (self._layers, FACES_KEPT) if layers else (self._kept, KEPT)
-        if key not in store:
-            store[key] = make()
-            while len(store) > most:
-                store.popitem(last=False)
-        store.move_to_end(key)
-        return store[key]
+        return kept(store, key, most, make)
 
     def _picture(self, gl: GL, state: Any, baked: dict[str, BakedArrays], size: int, positions: int) -> np.ndarray:
         target, total = Target(gl, size, size), np.zeros((size, size, 4))

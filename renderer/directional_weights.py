@@ -55,7 +55,7 @@ class Weighed:
         """What each point counts in each pixel, (pixels, points), row after row from the top."""
         cloud, subject = state.cloud.model_dump(mode="json"), state.subject.model_dump(mode="json")
         shown = [part.model_dump(mode="json") for part in (state.camera, state.visibility, state.selection)]
-        return _kept(self._weights, key_of(cloud, subject, *shown), WEIGHTS_KEPT, lambda: self._weighed(state))
+        return kept(self._weights, key_of(cloud, subject, *shown), WEIGHTS_KEPT, lambda: self._weighed(state))
 
     def light(self, state: Any) -> np.ndarray:
         """What each point sends to the eye (points, 3), W m-2 sr-1."""
@@ -66,7 +66,7 @@ class Weighed:
             return np.asarray(lit, np.float64)
 
         document = state.model_dump(mode="json", exclude=NO_PART_OF_LIGHT)
-        return _kept(self._lights, key_of(document), LIGHTS_KEPT, make)
+        return kept(self._lights, key_of(document), LIGHTS_KEPT, make)
 
     def _weighed(self, state: Any) -> csr_array:
         baked = self.partial.baked(state)
@@ -77,7 +77,7 @@ class Weighed:
         box = np.asarray(baked["visibility"].arrays["box"], np.float64)
         of = state.camera, box, state.visibility.texels, state.selection.magnification == "linear"
         key = str((state.camera, box.tolist(), *of[2:]))
-        return csr_array(_kept(self._drawn, key, DRAWN_KEPT, lambda: self._of_strips(*of)) @ chosen)
+        return csr_array(kept(self._drawn, key, DRAWN_KEPT, lambda: self._of_strips(*of)) @ chosen)
 
     def _of_strips(self, camera: Any, box: np.ndarray, texels: int, linear: bool) -> csr_array:
         """What each texel of the faces' strips counts in each pixel."""
@@ -148,7 +148,8 @@ def texel_shares(
 Value = TypeVar("Value")
 
 
-def _kept(store: OrderedDict[Hashable, Value], key: Hashable, most: int, make: Callable[[], Value]) -> Value:
+def kept(store: OrderedDict[Hashable, Value], key: Hashable, most: int, make: Callable[[], Value]) -> Value:
+    """What a store has under a key, made where it has none; of the latest asked for, `most` stay."""
     if key not in store:
         store[key] = make()
         while len(store) > most:
