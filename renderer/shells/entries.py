@@ -201,14 +201,11 @@ class Entries:
         ctx.enable_only(moderngl.DEPTH_TEST | moderngl.CULL_FACE)
         query = ctx.query(samples=True)
         layers.begin()
-        for sheet in (layers.first, *layers.sheets):
-            sheet.framebuffer.use()
-            sheet.framebuffer.viewport = (0, 0, *sheet.texture.size)
-            sheet.framebuffer.clear(-1.0, -1.0, 0.0, 0.0)
         for layer in range(1 + 2 * layers.rows):
             sheet, row = layers.place(layer)
             sheet.framebuffer.use()
             sheet.framebuffer.viewport = (0, row, *size)
+            sheet.framebuffer.clear(-1.0, -1.0, 0.0, 0.0, viewport=(0, row, *size))
             before, before_row = layers.place(layer - 1) if layer else (None, 0)
             rows = {"layer_row": row, "before_row": before_row} if layer else {}
             textures = {"entry_before": before.texture} if before else {}

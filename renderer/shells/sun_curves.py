@@ -31,7 +31,7 @@ layout(location = 1) out vec4 far;
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     Ray ray = pixel_ray(gl_FragCoord.xy);
-    SunWay way = SunWay(vec4(NEVER), vec3(NEVER), NEVER, 0.0);
+    SunWay way = sun_way();
     bool met = false;
     int layer = 0;
     do {
@@ -78,4 +78,4 @@ class SunCurves(ShadowTechnique):
 def pass_source(state: ShellsState) -> Source:
     """The fragment stage that follows the sun's rays."""
     files = ("shells/sun_walk.glsl", "shells/entry.glsl")
-    return composed(chosen(state, ("filter",)), variant_of(state), files, BODY, "uniform float shadow_texel; // m")
+    return composed(chosen(state, ("filter",)), variant_of(state), files, BODY, "uniform float shadow_texel; // m\nuniform float shadow_side;  // texels")

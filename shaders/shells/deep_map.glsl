@@ -11,10 +11,18 @@ float deep_share(vec3 point, float slack, float softness) {
     vec2 place = vec2(dot(from, shadow_across), dot(from, shadow_down)) + softness * jitter;
     ivec2 texel = clamp(ivec2(place.x, shadow_side - place.y), ivec2(0), ivec2(shadow_side) - 1);
     vec4 near = texelFetch(shadow_near, texel, 0), far = texelFetch(shadow_far, texel, 0);
-    float t = dot(from, shadow_along);
-    vec4 first = clamp((t - near) / max(vec4(near.yzw, far.x) - near, 1.0e-9), 0.0, 1.0);
-    vec3 last = max((t - far.xyz) / max(vec3(far.yz, 2.0 * far.z - far.y) - far.xyz, 1.0e-9), 0.0);
-    float depth = dot(first, SUN_FIRST) + dot(vec3(min(last.xy, 1.0), last.z), SUN_LAST);
+    float t = dot(from, shadow_along), parts = t * (SUN_PARTS / shadow_texel);
+    vec4 near_at = floor(near);
+    vec3 far_at = floor(far.xyz);
+    vec4 first = clamp((parts - near_at) / max(vec4(near_at.yzw, far_at.x) - near_at, 1.0), 0.0, 1.0);
+    vec3 last = max((parts - far_at) / max(vec3(far_at.yz, 2.0 * far_at.z - far_at.y) - far_at, 1.0), 0.0);
+    last.xy = min(last.xy, 1.0);
+    // Between two steps nearly all of the way may be empty: then the depth there is the same everywhere.
+    vec4 first_flat = (vec4(near.yzw, far.x) - vec4(near_at.yzw, far_at.x) - 0.02) / 0.96;
+    vec2 last_flat = (far.yz - far_at.yz - 0.02) / 0.96;
+    first = mix(first, first_flat, greaterThan(min(first * (1.0 - first), first_flat + 0.01), vec4(0.0)));
+    last.xy = mix(last.xy, last_flat, greaterThan(min(last.xy * (1.0 - last.xy), last_flat + 0.01), vec2(0.0)));
+    float depth = dot(first, SUN_FIRST) + dot(last, SUN_LAST);
 #if THINGS == 1
     float left = (fract(-far.w) - 0.01) / 0.98;
     if (far.w < 0.0) return t < floor(-far.w) * shadow_texel / SUN_EIGHTHS ? exp(-depth) : left;

@@ -13,48 +13,86 @@ const float SUN_DARK = 6.0; // depth behind which nothing is left for what stand
 const float SUN_DARK = 1.95; // depth behind the last step, from where the curve goes on as it is
 #endif
 const float SUN_EIGHTHS = 8.0;
-const float NEVER = 1.0e20;
+const float SUN_PARTS = 64.0;     // of a texel, in which distances are counted
+const float SUN_MATTER = 1.0e-3;  // depth of a step from which on it counts as matter
+const float NOWHERE = 1.0e20; // m
+#define NEVER (2.0 * SUN_PARTS * shadow_side)
 
 struct SunWay {
     vec4 near;
     vec3 far;
     float stop;
     float depth;
+    float reached; // depth of the last step of the curve that was passed,
+    float since;   // where,
+    float gap;     // how much of the way since then was empty,
+    float level;   // the sum of depth over that,
+    float end;     // and where the last matter ended
 };
+
+SunWay sun_way() {
+    return SunWay(vec4(NEVER), vec3(NEVER), NOWHERE, 0.0, 0.0, 0.0, 0.0, 0.0, NOWHERE);
+}
 
 const vec4 SUN_NEAR_DEPTH = -log(SUN_NEAR);
 const vec3 SUN_FAR_DEPTH = -log(SUN_FAR);
 
+// Depth between the last step and each of the next, as a share, at which most of the way between lies; 0 where none does.
+vec4 sun_flat(SunWay way, float from, vec4 next, vec4 to) {
+    float gap = way.gap + max(from - way.end, 0.0), level = way.level + max(from - way.end, 0.0) * way.depth;
+    vec4 share = clamp((level / max(gap, 1.0e-9) - way.reached) / max(next - way.reached, 1.0e-6), 0.0, 1.0);
+    return mix(vec4(0.0), 0.02 + 0.96 * share, greaterThan(vec4(gap), 0.5 * (to - way.since)));
+}
+
+vec4 sun_laid(vec4 at, vec4 flat_share) {
+    return floor(at * (SUN_PARTS / shadow_texel)) + flat_share;
+}
+
 // Even matter from a distance on: steps of the curve that are not passed yet are laid where it would pass them.
 void sun_pass(inout SunWay way, float from, float length_of_it, float depth) {
-    float slowness = length_of_it / max(depth, 1.0e-12);
-    way.near = mix(way.near, from + (SUN_NEAR_DEPTH - way.depth) * slowness, greaterThanEqual(SUN_NEAR_DEPTH, vec4(way.depth)));
-    way.far = mix(way.far, from + (SUN_FAR_DEPTH - way.depth) * slowness, greaterThanEqual(SUN_FAR_DEPTH, vec3(way.depth)));
-    way.depth += depth;
+    float slowness = length_of_it / max(depth, 1.0e-12), after = way.depth + depth;
+    vec4 near = from + (SUN_NEAR_DEPTH - way.depth) * slowness, far = from + (vec4(SUN_FAR_DEPTH, 100.0) - way.depth) * slowness;
+    vec4 near_flat = sun_flat(way, from, SUN_NEAR_DEPTH, near), far_flat = sun_flat(way, from, vec4(SUN_FAR_DEPTH, 100.0), far);
+    // Of steps that are passed at once the first has the gap.
+    vec4 before = vec4(-1.0, SUN_NEAR_DEPTH.xyz);
+    near_flat *= vec4(lessThanEqual(before, vec4(way.depth)));
+    far_flat *= vec4(lessThanEqual(vec4(SUN_NEAR_DEPTH.w, SUN_FAR_DEPTH), vec4(way.depth)));
+    way.near = mix(way.near, sun_laid(near, near_flat), greaterThanEqual(SUN_NEAR_DEPTH, vec4(way.depth)));
+    way.far = mix(way.far, sun_laid(far, far_flat).xyz, greaterThanEqual(SUN_FAR_DEPTH, vec3(way.depth)));
+    vec4 near_passed = SUN_NEAR_DEPTH * step(SUN_NEAR_DEPTH, vec4(after));
+    vec3 far_passed = SUN_FAR_DEPTH * step(SUN_FAR_DEPTH, vec3(after));
+    float reached = max(max(max(near_passed.x, near_passed.y), max(near_passed.z, near_passed.w)),
+                        max(max(far_passed.x, far_passed.y), far_passed.z));
+    bool crossed = reached > way.reached, matter = depth > SUN_MATTER;
+    float gap = matter ? max(from - way.end, 0.0) : 0.0;
+    way.gap = crossed ? 0.0 : way.gap + gap;
+    way.level = crossed ? 0.0 : way.level + gap * way.depth;
+    way.since = crossed ? from + (reached - way.depth) * slowness : way.since;
+    way.end = matter ? from + length_of_it : way.end;
+    way.reached = reached;
+    way.depth = after;
 }
 
-// Behind all matter: steps that were not passed are nowhere.
+// Behind all matter: steps that were not passed are nowhere, and the depth stays as it is.
 void sun_settle(inout SunWay way) {
-    way.near = mix(way.near, vec4(NEVER), greaterThan(SUN_NEAR_DEPTH, vec4(way.depth)));
-    way.far = mix(way.far, vec3(NEVER), greaterThan(SUN_FAR_DEPTH, vec3(way.depth)));
+    vec4 near_flat = 0.02 + 0.96 * clamp((way.depth - way.reached) / max(SUN_NEAR_DEPTH - way.reached, 1.0e-6), 0.0, 1.0);
+    vec3 far_flat = 0.02 + 0.96 * clamp((way.depth - way.reached) / max(SUN_FAR_DEPTH - way.reached, 1.0e-6), 0.0, 1.0);
+    way.near = mix(way.near, NEVER + near_flat, greaterThan(SUN_NEAR_DEPTH, vec4(way.depth)));
+    way.far = mix(way.far, NEVER + far_flat, greaterThan(SUN_FAR_DEPTH, vec3(way.depth)));
 }
 
-// The opaque surface ends the way. slope: by how many texels it falls within one; the curve's next step, which is not reached,
-// is laid where the curve runs through this end.
+// The opaque surface ends the way. slope: by how many texels it falls within one; steps of the curve that are not passed are laid
+// where it would pass them behind this end.
 void sun_stop(inout SunWay way, float end, float slope) {
+    float slowness = (end - way.since) / max(way.depth - way.reached, 1.0e-6);
+    vec4 near = way.since + (SUN_NEAR_DEPTH - way.reached) * slowness, far = way.since + (vec4(SUN_FAR_DEPTH, 100.0) - way.reached) * slowness;
+    near = min(sun_laid(near, sun_flat(way, end, SUN_NEAR_DEPTH, vec4(end))), NEVER);
+    far = min(sun_laid(far, sun_flat(way, end, vec4(SUN_FAR_DEPTH, 100.0), vec4(end))), NEVER);
+    bool begun = way.reached > 0.0;
     sun_settle(way);
     way.stop = floor(SUN_EIGHTHS * (end / shadow_texel + slope)) + 0.01 + 0.98 * exp(-way.depth);
-    float before = 0.0, from = way.near.x;
-    for (int i = 0; i < 7 && way.near.x < NEVER; i++) {
-        float level = -log(i < 4 ? SUN_NEAR[i] : SUN_FAR[i - 4]), at = i < 4 ? way.near[i] : way.far[i - 4];
-        if (at >= NEVER) {
-            at = from + (end - from) * (level - before) / max(way.depth - before, 1.0e-9);
-            if (i < 4) way.near[i] = at; else way.far[i - 4] = at;
-            break;
-        }
-        before = level;
-        from = at;
-    }
+    way.near = mix(way.near, near, lessThan(vec4(way.depth), begun ? SUN_NEAR_DEPTH : vec4(-1.0)));
+    way.far = mix(way.far, far.xyz, lessThan(vec3(way.depth), begun ? SUN_FAR_DEPTH : vec3(-1.0)));
 }
 
 // Returns whether the ray met the opaque surface on its way.
