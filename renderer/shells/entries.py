@@ -24,13 +24,18 @@ from renderer.shells.world_scale import MOST_LAYERS
 
 VIEWS_KEPT = 6
 """Views whose entries are kept, so that a moved sun finds the camera's again: of two pictures side by side, each with
-two sets of rays, and of their suns."""
+the rays of its first sample and of later ones, and of their suns."""
 
 PIXELS_KEPT = 2**22
 """Of all of them together; what one picture needs is kept whatever its size."""
 
+CLIP_DISTANCE = 0x3000
+"""OpenGL's GL_CLIP_DISTANCE0."""
+
+NO_PLANE = (0.0, 0.0, 0.0, 0.0)
+
 OF_A_PICTURE = 3
-"""Views of one picture at most: its sun's, and two sets of rays."""
+"""Views of one picture at most: its sun's, and those of its first and of later samples."""
 
 
 @dataclass(frozen=True)
@@ -40,12 +45,15 @@ class View:
     Attributes:
         key: of camera, sample and shell: equal ones have the same entries. size: (width, height) in pixels.
         triangles: of the shell's boundary. projection: (4, 4) from metres round the shell's middle to clip space.
+        first, second: (4,) planes on whose negative side nothing is drawn; all 0 where there are none.
     """
 
     key: Hashable
     size: tuple[int, int]
     triangles: Triangles
     projection: Any
+    first: Any = NO_PLANE
+    second: Any = NO_PLANE
 
 
 class _Sheet:
@@ -102,7 +110,7 @@ class Layers:
     def draw(
         self,
         kinds: tuple[Kind, ...],
-        nothing: float,
+        nothing: float | None,
         fragment: Source,
         textures: Mapping[str, AnyTexture],
         values: Mapping[str, Any],
@@ -112,7 +120,8 @@ class Layers:
         """Run a stage where rays come in, unless what it shows is still there.
 
         Args:
-            kinds: components and type of each texture. nothing: what they hold where no ray comes in.
+            kinds: components and type of each texture. nothing: what they hold where no ray comes in; None
+                where nobody asks.
             fragment, textures, values: of the stage, beside the entries.
             shows: equal where the stage would draw the same again; None where it never would.
             everywhere: whether it runs where no ray comes in, too: for a camera within the shell.
@@ -129,7 +138,8 @@ class Layers:
         self._shown[kinds] = shows
         framebuffer.depth_mask = False
         framebuffer.use()
-        framebuffer.clear(nothing, nothing, nothing, nothing)
+        if nothing is not None:
+            framebuffer.clear(nothing, nothing, nothing, nothing)
         run = run_fullscreen if everywhere else run_covered
         run(self._gl, fragment, {**textures, **self.textures}, {**values, **self.values})
         return made
@@ -200,6 +210,9 @@ class Entries:
         ctx, size, fragments = self._gl.ctx, view.size, entry_sources()
         ctx.enable_only(moderngl.DEPTH_TEST | moderngl.CULL_FACE)
         query = ctx.query(samples=True)
+        for side in range(2):
+            ctx.enable_direct(CLIP_DISTANCE + side)
+        where = {"view_projection": view.projection, "clip_first": view.first, "clip_second": view.second}
         layers.begin()
         for layer in range(1 + 2 * layers.rows):
             sheet, row = layers.place(layer)
@@ -210,10 +223,12 @@ class Entries:
             rows = {"layer_row": row, "before_row": before_row} if layer else {}
             textures = {"entry_before": before.texture} if before else {}
             with query:
-                view.triangles.draw(fragments[min(layer, 1)], textures, {"view_projection": view.projection, **rows})
+                view.triangles.draw(fragments[min(layer, 1)], textures, where | rows)
             if query.samples == 0:
                 break
             layers.count = layer + 1
+        for side in range(2):
+            ctx.disable_direct(CLIP_DISTANCE + side)
         ctx.enable_only(moderngl.NOTHING)
         return layers.count < 1 + 2 * layers.rows
 

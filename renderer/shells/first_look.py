@@ -7,33 +7,31 @@ to the picture than one for each pixel. It is one of the samples of the mean, fr
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import moderngl
 
+from renderer.shells.lattice import every_fourth, every_second
 from renderer.shells.traced import lit_along_traces
 
 if TYPE_CHECKING:
-    from renderer.gl.program import AnyTexture
     from renderer.shells.frame import Frame
     from renderer.shells.state import ShellsState
 
-CORNERS = {1: ((0.5, 0.5),), 2: ((0.0, 0.0), (1.0, 1.0))}
-"""By the number of rays of two by two pixels: where in them each is, pixels from the top-left one."""
+LATTICES = {1: every_fourth, 2: every_second}
+"""By the number of rays of two by two pixels."""
 
 
-def rays_of_blocks(frame: Frame, state: ShellsState, rays: int, inside: bool) -> dict[str, AnyTexture]:
-    """Light and opacity of some rays of each two by two pixels: `gathered_0` and so on, a ray of each block in each.
+def rays_of_some(frame: Frame, state: ShellsState, rays: int, inside: bool) -> tuple[moderngl.Texture, dict[str, Any]]:
+    """Light and opacity of some rays of each two by two pixels, and the uniforms by which they are laid out.
 
     Args:
-        frame: of the picture. state: by which its rays are followed. rays: of a block.
+        frame: of the picture. state: by which its rays are followed. rays: of two by two pixels.
         inside: whether the camera is within a cell.
     """
-    gathered: dict[str, AnyTexture] = {}
-    for number, corner in enumerate(CORNERS[rays]):
-        part = frame.coarser(corner, state)
-        texture = lit_along_traces(part, part.entries(), inside)
-        texture.filter = moderngl.LINEAR, moderngl.LINEAR
-        texture.repeat_x = texture.repeat_y = False
-        gathered[f"gathered_{number}"] = texture
-    return gathered
+    lattice = LATTICES[rays](frame.size, frame.offset)
+    part = frame.sparser(lattice, state)
+    texture = lit_along_traces(part, part.entries(), inside)
+    texture.filter = moderngl.LINEAR, moderngl.LINEAR
+    texture.repeat_x = texture.repeat_y = False
+    return texture, {"first_before": lattice.size[0] - -(-frame.size[0] // 2)}

@@ -14,6 +14,7 @@ from renderer.gl.layers import Kind
 from renderer.gl.program import AnyTexture
 from renderer.gl.source import Source
 from renderer.shells.entries import Layers, View
+from renderer.shells.lattice import Lattice
 from renderer.shells.program import variant_of
 from renderer.shells.resident import Placed
 from renderer.world.camera import Orthographic, camera_uniforms, pose
@@ -27,9 +28,6 @@ if TYPE_CHECKING:
 
 FAR = 1.0e30
 """What a picture from the sun holds where its rays meet nothing, as far away as can be."""
-
-STEPS = ("camera_origin_dx", "camera_origin_dy", "camera_dx", "camera_dy")
-"""Uniforms by which rays change from pixel to pixel."""
 
 DEPTHS = 1e-4
 """Nearest distance that is drawn over the farthest, at least: a depth of 24 bits tells less apart."""
@@ -45,7 +43,7 @@ class Frame:
         place: where the shell stands. size, offset, sample: of the picture, as `SceneRenderer.prepare` has them.
         textures, values: samplers and uniforms that every pass may read.
         things: other meshes of the scene, where there are any.
-        whole: size of the picture of which each of its pixels stands for two by two; None where they are its own.
+        lattice: where the rays are that it draws; None where each pixel has its own.
     """
 
     renderer: ShellsRenderer
@@ -60,7 +58,7 @@ class Frame:
     textures: dict[str, AnyTexture]
     values: dict[str, Any]
     things: ThingMesh | None = None
-    whole: tuple[int, int] | None = None
+    lattice: Lattice | None = None
 
     def take(self, textures: Mapping[str, AnyTexture], values: Mapping[str, Any]) -> None:
         """Let every later pass read these samplers and uniforms."""
@@ -74,23 +72,18 @@ class Frame:
             other = reach(camera, self.things.place)
             farthest = max(near_far[1], other[1])
             near_far = max(min(near_far[0], other[0]), DEPTHS * farthest), farthest
-        return self._projection(camera, self.size, self.offset, near_far)
+        if self.lattice is not None:
+            return self.lattice.projection(self._whole(camera, self.lattice, near_far))
+        return view_projection(camera, self.size, self.offset, self.place.centre, near_far)
 
-    def coarser(self, corner: tuple[float, float], state: ShellsState) -> Frame:
-        """A frame with one ray for two by two pixels of this one, as many pixels from their top-left one as `corner`
-        says; of a state that differs from this one's in how rays are followed."""
-        offset = (0.5 * (corner[0] + self.offset[0]), 0.5 * (corner[1] + self.offset[1]))
-        size = (-(-self.size[0] // 2), -(-self.size[1] // 2))
-        wider = {name: tuple(2 * part for part in self.values[name]) for name in STEPS}
-        values = {**self.values, **wider, "picture_size": size, "pixel_offset": offset}
-        textures = dict(self.textures)
-        return replace(
-            self, state=state, size=size, offset=offset, values=values, textures=textures, whole=self.size
-        )
+    def sparser(self, lattice: Lattice, state: ShellsState) -> Frame:
+        """The same with fewer rays, of a state that differs from this one's in how they are followed."""
+        values, textures = {**self.values, **lattice.uniforms(self.values)}, dict(self.textures)
+        return replace(self, state=state, size=lattice.size, values=values, textures=textures, lattice=lattice)
 
     def entries(self) -> Layers:
         """Where the camera's rays come into the shell, layer by layer."""
-        key = (self.shell_key, self.state.camera, self.offset, variant_of(self.state).opaque, self.whole)
+        key = (self.shell_key, self.state.camera, self.offset, variant_of(self.state).opaque, self.lattice)
         return self._entries(key, self.state.camera, self.size, self.offset)
 
     def from_sun(
@@ -128,21 +121,17 @@ class Frame:
         return float(2 ** (round(4 * math.log2(max(width, 1e-9))) / 4))
 
     def _entries(self, key: Any, camera: Any, size: tuple[int, int], offset: tuple[float, float]) -> Layers:
-        matrix = self._projection(camera, size, offset, reach(camera, self.place))
-        view = View(key, size, self.renderer.triangles(self.shell_key), matrix)
+        near_far, lattice = reach(camera, self.place), self.lattice if camera is self.state.camera else None
+        triangles = self.renderer.triangles(self.shell_key)
+        if lattice is None:
+            matrix = view_projection(camera, size, offset, self.place.centre, near_far)
+            return self.renderer.entries.find(View(key, size, triangles, matrix))
+        whole = self._whole(camera, lattice, near_far)
+        view = View(key, size, triangles, lattice.projection(whole), *lattice.sides(whole))
         return self.renderer.entries.find(view)
 
-    def _projection(
-        self, camera: Any, size: tuple[int, int], offset: tuple[float, float], near_far: tuple[float, float]
-    ) -> np.ndarray:
-        """`view_projection` of a camera; of this frame's own, whose pixels may be wider than its picture's."""
-        if self.whole is None or camera is not self.state.camera:
-            return view_projection(camera, size, offset, self.place.centre, near_far)
-        matrix = view_projection(camera, self.whole, (0.5, 0.5), self.place.centre, near_far)
-        across, down = (0.5 * whole / side for whole, side in zip(self.whole, size, strict=True))
-        spread = np.diag([across, down, 1.0, 1.0])
-        spread[:2, 3] = across + (1 - 2 * offset[0]) / size[0] - 1, 1 - down - (1 - 2 * offset[1]) / size[1]
-        return np.asarray(spread @ matrix)
+    def _whole(self, camera: Any, lattice: Lattice, near_far: tuple[float, float]) -> np.ndarray:
+        return view_projection(camera, lattice.picture, (0.5, 0.5), self.place.centre, near_far)
 
 
 def reach(camera: Any, place: Placed) -> tuple[float, float]:

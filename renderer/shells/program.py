@@ -121,6 +121,9 @@ void main() {
     radiance = before_sky(sum.rgb, sum.a, pixel_ray(gl_FragCoord.xy).direction);
 }"""
 
+SPREAD_DECLARATIONS = """
+uniform int first_before; // columns of rays before the picture's own, in the first row"""
+
 FIRST = ("lib/pixel.glsl", "lib/camera.glsl", "lib/sky.glsl", "lib/backdrop.glsl", "shells/tetrahedra.glsl",
          "shells/pixel_ray.glsl")
 
@@ -188,8 +191,8 @@ def compose_source(state: ShellsState) -> Source:
 def spread_source(state: ShellsState, rays: int) -> Source:
     """The same, of fewer rays than pixels: `rays` for two by two."""
     body = COMPOSE_BODY % "spread_out(picture_pixel(gl_FragCoord.xy, picture_size))"
-    samplers = "".join(f"\nuniform sampler2D gathered_{number};" for number in range(rays))
-    return composed((), variant_of(state), ("shells/first_look.glsl",), body, f"#define FIRST_RAYS {rays}{samplers}")
+    more = "uniform sampler2D gathered;" + (SPREAD_DECLARATIONS if rays > 1 else "")
+    return composed((), variant_of(state), ("shells/first_look.glsl",), body, f"#define FIRST_RAYS {rays}\n{more}")
 
 
 def chosen(state: ShellsState, slots: tuple[str, ...]) -> Chosen:

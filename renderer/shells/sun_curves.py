@@ -26,6 +26,9 @@ MAP_DECLARATIONS = (
     "uniform float shadow_side;   // texels",
 )
 
+PASS_DECLARATIONS = """uniform float shadow_texel; // m
+uniform float shadow_side;  // texels"""
+
 BODY = """layout(location = 0) out vec4 near;
 layout(location = 1) out vec4 far;
 void main() {
@@ -78,4 +81,4 @@ class SunCurves(ShadowTechnique):
 def pass_source(state: ShellsState) -> Source:
     """The fragment stage that follows the sun's rays."""
     files = ("shells/sun_walk.glsl", "shells/entry.glsl")
-    return composed(chosen(state, ("filter",)), variant_of(state), files, BODY, "uniform float shadow_texel; // m\nuniform float shadow_side;  // texels")
+    return composed(chosen(state, ("filter",)), variant_of(state), files, BODY, PASS_DECLARATIONS)

@@ -76,7 +76,7 @@ def lit_along_traces(frame: Frame, layers: Layers, inside: bool) -> moderngl.Tex
     kinds: tuple[Kind, ...] = ((4, "f4"),) * count
     if frame.things is not None and "thing_seen" not in frame.textures and not layers.holds(kinds, shows):
         frame.textures["thing_seen"] = frame.things.met(frame)
-    traces = layers.draw(kinds, -1.0, trace_source(state, inside), frame.textures, frame.values, shows, inside)
+    traces = layers.draw(kinds, None, trace_source(state, inside), frame.textures, frame.values, shows, inside)
     textures = {**frame.textures, **{f"traced_{n}": trace for n, trace in enumerate(traces)}}
     last: tuple[Kind, ...] = ((4, state.accumulation.dtype),)
     return layers.draw(last, 0.0, light_source(state), textures, frame.values, everywhere=inside)[0]

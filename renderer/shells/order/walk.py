@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 from renderer.core.params import param
 from renderer.gl.layers import Kind
-from renderer.shells.first_look import rays_of_blocks
+from renderer.shells.first_look import rays_of_some
 from renderer.shells.program import compose_source, spread_source, walk_source
 from renderer.shells.technique import OrderTechnique
 from renderer.shells.traced import lit_along_traces
@@ -34,12 +34,14 @@ class Walk(OrderTechnique):
         """Find where rays come in, and walk; what is gathered goes before the background."""
         inside = frame.values["start_tet"] >= 0
         sampling, rays = frame.state.sampling.first_sample()
+        # From within the shell every pixel's ray is followed far, so that half of them are too many.
+        rays = 1 if inside and rays == 2 else rays if min(frame.size) > 1 else 4
         if frame.sample == 0 and rays < 4:
-            state = frame.state.model_copy(update={"sampling": sampling})
-            source, gathered = spread_source(frame.state, rays), rays_of_blocks(frame, state, rays, inside)
+            gathered, more = rays_of_some(frame, frame.state.model_copy(update={"sampling": sampling}), rays, inside)
+            source, values = spread_source(frame.state, rays), {**frame.values, **more}
         else:
-            source, gathered = compose_source(frame.state), {"gathered": _gathered(frame, inside)}
-        return source, {**_with_things(frame).textures, **gathered}, frame.values
+            source, gathered, values = compose_source(frame.state), _gathered(frame, inside), frame.values
+        return source, {**_with_things(frame).textures, "gathered": gathered}, values
 
 
 def _gathered(frame: Frame, inside: bool) -> moderngl.Texture:

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from tests.shells.conftest import even
-from tests.shells.shadow.slabs import share, sun_share
+from tests.shells.shadow.slabs import THICKNESS, share, sun_share
 
 Draw = Callable[..., np.ndarray]
 DEEP: dict[str, Any] = {"kind": "deep_shadow_map", "resolution": 128, "bias": 0.0}
@@ -57,12 +57,30 @@ def test_a_surface_without_its_slope_would(draw: Draw, spoil: Callable) -> None:
         assert acne(draw) > 0.05
 
 
+def behind_a_gap(draw: Draw, shadow: dict[str, Any]) -> float:
+    """Light of two veils with a wide gap between them: the share of the first lies between two steps of the curve."""
+    block = even(0.0, layers=32)
+    block[29:31, :, :, 3] = -np.expm1(0.5 * np.log(0.79) * 32 * 0.1 / THICKNESS)
+    block[6:8, :, :, 3] = 0.05
+    patch = {"light": {"kind": "lambert"}, "sun": {"kind": "direction", "azimuth": 90.0, "elevation": 80.0}}
+    found = draw({**patch, "shadow": shadow}, block)[3:5, 3:5, 1]
+    return float(found.mean())
+
+
+def test_light_behind_a_gap(draw: Draw, spoil: Callable) -> None:
+    right = behind_a_gap(draw, {"kind": "sun_walk", "rate": 8.0})
+    alone = {**DEEP, "close": 0}
+    assert behind_a_gap(draw, alone) == pytest.approx(right, rel=0.008)
+    with spoil("shells/deep_map.glsl", "first_flat + 0.01)", "first_flat - 9.0)"):
+        assert abs(behind_a_gap(draw, alone) / right - 1) > 0.015
+
+
 @pytest.mark.parametrize(
     ("file", "right", "wrong"),
     [
         ("shells/deep_map.glsl", "exp(-depth) : at_surface", "1.0 - depth : at_surface"),
         ("shells/deep_map.glsl", "float t = dot(from", "float t = 0.8 * dot(from"),
-        ("shells/sun_walk.glsl", "way.depth += depth;", "way.depth += 0.5 * depth;"),
+        ("shells/sun_walk.glsl", "way.depth = after;", "way.depth += 0.5 * depth;"),
     ],
 )
 def test_a_wrong_curve_is_found(draw: Draw, spoil: Callable, file: str, right: str, wrong: str) -> None:
