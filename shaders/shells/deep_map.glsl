@@ -8,7 +8,8 @@ float deep_share(vec3 point, float slack, float softness) {
     vec3 from = point - shadow_origin;
     float noise = fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715))));
     vec2 jitter = fract(vec2(noise, 7.0 * noise) + sample_shift * vec2(0.7548776662, 0.5698402910)) - 0.5;
-    vec2 place = vec2(dot(from, shadow_across), dot(from, shadow_down)) + softness * jitter;
+    // A first sample takes the nearest: its noise would be more than its stairs are off.
+    vec2 place = vec2(dot(from, shadow_across), dot(from, shadow_down)) + (sample_shift > 0.0 ? softness : 0.0) * jitter;
     ivec2 texel = clamp(ivec2(place.x, shadow_side - place.y), ivec2(0), ivec2(shadow_side) - 1);
     vec4 near = texelFetch(shadow_near, texel, 0), far = texelFetch(shadow_far, texel, 0);
     float t = dot(from, shadow_along), parts = t * (SUN_PARTS / shadow_texel);
