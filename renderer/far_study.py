@@ -53,7 +53,11 @@ BARE: Mapping[str, Any] = {"base.opaque": False, "light": {"kind": "unlit"}, "sh
 """The shell without its surface: what it hides is the matter's alone."""
 
 TECHNIQUES = "none,mipmap,mipmap:bias=-1,directional,directional:bias=-1"
-DEFAULT = "default picture"
+DEFAULT, FIRST = "default picture", "its first sample"
+SETTLED = 64
+"""Samples a pixel of the default picture, at least: it moves what it samples from one to the next, and has converged
+when it has been everywhere."""
+
 FILES = ("results.json", "table.md", "distance.png", "distance.svg")
 
 Tell = Callable[[float, str], None]
@@ -99,7 +103,7 @@ def variants(techniques: str) -> list[tuple[str, dict[str, Any], dict[str, Any]]
     for choice in choices_of("shells", "filter", techniques):
         own = {"filter": {"kind": choice.kind, **choice.parameters}}
         found.append((choice.label, {**EXACT, **own}, {**EXACT, **BARE, **own}))
-    return [*found, (DEFAULT, {}, dict(BARE))]
+    return [*found, (DEFAULT, {}, dict(BARE)), (FIRST, {}, dict(BARE))]
 
 
 def measure(
@@ -125,16 +129,17 @@ def measure(
             raise InputError("presets", f"{preset} shows nothing but background")
         for turn, (label, lit, bare) in enumerate(kinds):
             tell((number + 0.5 + 0.5 * turn / len(kinds)) / count, f"{preset}, {far:g} times as far: {label}")
-            brightness = _drawn(session, seen(session, preset, far, lit), far)[0] / means[0][0]
-            opacity = _drawn(session, seen(session, preset, far, bare), far)[1] / means[1][1]
+            brightness = _drawn(session, seen(session, preset, far, lit), far, label)[0] / means[0][0]
+            opacity = _drawn(session, seen(session, preset, far, bare), far, label)[1] / means[1][1]
             lines.append(Line(preset, label, far, _pixel(session, preset, far), brightness, opacity, error))
     return lines
 
 
-def _drawn(session: Session, state: SceneState, times: float) -> tuple[float, float]:
+def _drawn(session: Session, state: SceneState, times: float, label: str) -> tuple[float, float]:
     side = max(8, round(LINES / times))
+    samples = 1 if label == FIRST else max(SETTLED if label == DEFAULT else 1, RAYS // side**2)
     plain = state.model_copy(update={"view": state.view.model_copy(update={"background": "none"})})
-    return _means(session.draw(plain, side, side, max(1, RAYS // side**2)).linear)
+    return _means(session.draw(plain, side, side, samples).linear)
 
 
 def _means(linear: np.ndarray) -> tuple[float, float]:
@@ -185,8 +190,9 @@ def chart(lines: Sequence[Line], title: str) -> Figure:
             place = axes[row][column]
             for number, label in enumerate(labels):
                 own = [line for line in lines if (line.preset, line.label) == (preset, label)]
+                dashes = "s:" if label in (DEFAULT, FIRST) else "o-"
                 place.plot([line.times for line in own], [100 * (getattr(line, name) - 1) for line in own],
-                           "o-" if label != DEFAULT else "s:", color=COLOURS[number % len(COLOURS)], label=label)
+                           dashes, color=COLOURS[number % len(COLOURS)], label=label)
             place.axhspan(-3, 3, color="0.9", zorder=0)
             place.set_xscale("log", base=2)
             far = list(dict.fromkeys(line.times for line in lines))
@@ -210,7 +216,8 @@ def write(lines: Sequence[Line], folder: Path, title: str) -> str:
         f"{title}\n\nEach cell: brightness and opacity against the reference, in per cent. Brightness is the mean "
         f"radiance of the preset's whole picture, opacity that of its shell without its surface. Pixels are those of "
         f"{LINES} lines; the reference has {JUDGED} x {JUDGED} px of 16 positions in every window. Filters are drawn "
-        f"with light and a way to the sun at every sample; the default picture as it is.\n\n{table(lines)}"
+        f"with light and a way to the sun at every sample; the default picture as it is, of {SETTLED} samples at "
+        f"least.\n\n{table(lines)}"
     )
     (folder / "table.md").write_text(said, encoding="utf-8")
     figure = chart(lines, title)
