@@ -55,7 +55,7 @@ void main() {
 
 class SunCurves(ShadowTechnique):
     """A map from the sun, of how much is left of it at each depth: each texel keeps the distances at which that falls
-    by a seventh, and by another."""
+    by a seventh, and by another, and how dark the gaps between are."""
 
     textures: ClassVar[dict[str, str]] = {"near": "sampler2D", "far": "sampler2D"}
     includes: ClassVar[tuple[str, ...]] = ("shells/sun_walk.glsl", "shells/deep_map.glsl")

@@ -1,8 +1,8 @@
 // How much of the sun a map from its side leaves at a place: the curve of one texel.
 //
-// Symbols: near, far: distances from the sun's side (m) at which the share that is left falls below SUN_NEAR and SUN_FAR, the optical
-// depth straight between them and beyond the last; surface, how far a place is behind the opaque surface, on which it lies where
-// that is no more than `slack` either way (m); softness, width over which texels are read (texels).
+// Symbols: near, far: where the share that is left falls below SUN_NEAR and SUN_FAR, as in sun_walk.glsl, the optical depth straight
+// between them and beyond the last, or even where most of the way is empty; surface, how far a place is behind the opaque surface, on
+// which it lies where that is no more than `slack` either way (m); softness, width over which texels are read (texels).
 
 float deep_share(vec3 point, float slack, float softness) {
     vec3 from = point - shadow_origin;

@@ -1,7 +1,8 @@
 // What a ray from the sun passes on its way through the shell: a curve of how much of it is left, by the distances of eight steps.
-// Symbols: near, far: distances (m) at which the share of the sun falls below SUN_NEAR and SUN_FAR; depth, optical depth gathered;
-// stop, where the opaque surface is, in eighths of a texel of the sun's picture, with what is left of the sun there as a fraction;
-// where other meshes receive the light, negative for where the shell ends without a surface.
+// Symbols: near, far: where the share of the sun falls below SUN_NEAR and SUN_FAR, whole parts of a texel; as their fractions, how much
+// of the depth between the step before and this one is passed where most of the way between them is empty, 0 where none is, else from
+// 0.02 to 0.98; depth, optical depth gathered; stop, where the opaque surface is, in eighths of a texel of the sun's picture, with what
+// is left of the sun there as a fraction; where other meshes receive the light, negative for where the shell ends without a surface.
 
 const vec4 SUN_NEAR = vec4(6.993, 6.0, 5.0, 4.0) / 7.0;
 const vec3 SUN_FAR = vec3(3.0, 2.0, 1.0) / 7.0;
@@ -15,8 +16,8 @@ const float SUN_DARK = 1.95; // depth behind the last step, from where the curve
 const float SUN_EIGHTHS = 8.0;
 const float SUN_PARTS = 64.0;     // of a texel, in which distances are counted
 const float SUN_MATTER = 1.0e-3;  // depth of a step from which on it counts as matter
-const float NOWHERE = 1.0e20; // m
-#define NEVER (2.0 * SUN_PARTS * shadow_side)
+const float NOWHERE = 1.0e20;     // m
+#define NEVER (2.0 * SUN_PARTS * shadow_side) // farther than the shell is wide, and few enough digits to leave some for a fraction
 
 struct SunWay {
     vec4 near;
@@ -37,18 +38,19 @@ SunWay sun_way() {
 const vec4 SUN_NEAR_DEPTH = -log(SUN_NEAR);
 const vec3 SUN_FAR_DEPTH = -log(SUN_FAR);
 
-// Depth between the last step and each of the next, as a share, at which most of the way between lies; 0 where none does.
+// The fraction of each of the next steps, if the way up to `from` is empty and the step lies at `to`: the gaps' mean depth.
 vec4 sun_flat(SunWay way, float from, vec4 next, vec4 to) {
     float gap = way.gap + max(from - way.end, 0.0), level = way.level + max(from - way.end, 0.0) * way.depth;
     vec4 share = clamp((level / max(gap, 1.0e-9) - way.reached) / max(next - way.reached, 1.0e-6), 0.0, 1.0);
     return mix(vec4(0.0), 0.02 + 0.96 * share, greaterThan(vec4(gap), 0.5 * (to - way.since)));
 }
 
+// at: m.
 vec4 sun_laid(vec4 at, vec4 flat_share) {
     return floor(at * (SUN_PARTS / shadow_texel)) + flat_share;
 }
 
-// Even matter from a distance on: steps of the curve that are not passed yet are laid where it would pass them.
+// Even matter from a distance on (m): steps of the curve that are not passed yet are laid where it would pass them.
 void sun_pass(inout SunWay way, float from, float length_of_it, float depth) {
     float slowness = length_of_it / max(depth, 1.0e-12), after = way.depth + depth;
     vec4 near = from + (SUN_NEAR_DEPTH - way.depth) * slowness, far = from + (vec4(SUN_FAR_DEPTH, 100.0) - way.depth) * slowness;
@@ -85,7 +87,8 @@ void sun_settle(inout SunWay way) {
 // where it would pass them behind this end.
 void sun_stop(inout SunWay way, float end, float slope) {
     float slowness = (end - way.since) / max(way.depth - way.reached, 1.0e-6);
-    vec4 near = way.since + (SUN_NEAR_DEPTH - way.reached) * slowness, far = way.since + (vec4(SUN_FAR_DEPTH, 100.0) - way.reached) * slowness;
+    vec4 near = way.since + (SUN_NEAR_DEPTH - way.reached) * slowness;
+    vec4 far = way.since + (vec4(SUN_FAR_DEPTH, 100.0) - way.reached) * slowness;
     near = min(sun_laid(near, sun_flat(way, end, SUN_NEAR_DEPTH, vec4(end))), NEVER);
     far = min(sun_laid(far, sun_flat(way, end, vec4(SUN_FAR_DEPTH, 100.0), vec4(end))), NEVER);
     bool begun = way.reached > 0.0;
