@@ -150,7 +150,7 @@ PRESETS = {
             "base": {"colour": [0.2, 0.26, 0.07]},
             "camera": _camera(4.0, 200, 22, 40),
             "sun": _sun(290, 25),
-            "sampling": _SPARSE,
+            "sampling": _SPARSE, "shadow": {"close": 1},
         },
     ),
     "tube_rocks": Preset(
