@@ -190,9 +190,9 @@ def chart(lines: Sequence[Line], title: str) -> Figure:
             place = axes[row][column]
             for number, label in enumerate(labels):
                 own = [line for line in lines if (line.preset, line.label) == (preset, label)]
-                dashes = "s:" if label in (DEFAULT, FIRST) else "o-"
+                marks = "s:" if label in (DEFAULT, FIRST) else "o-"
                 place.plot([line.times for line in own], [100 * (getattr(line, name) - 1) for line in own],
-                           dashes, color=COLOURS[number % len(COLOURS)], label=label)
+                           marks, color=COLOURS[number % len(COLOURS)], label=label)
             place.axhspan(-3, 3, color="0.9", zorder=0)
             place.set_xscale("log", base=2)
             far = list(dict.fromkeys(line.times for line in lines))

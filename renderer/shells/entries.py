@@ -7,7 +7,8 @@ from __future__ import annotations
 
 import math
 from collections import OrderedDict
-from collections.abc import Hashable, Mapping
+from collections.abc import Hashable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
 
@@ -32,7 +33,11 @@ PIXELS_KEPT = 2**22
 CLIP_DISTANCE = 0x3000
 """OpenGL's GL_CLIP_DISTANCE0."""
 
+CLIPPING = ("clip_first", "clip_second")
+"""Uniforms of the planes in `shaders/stages/mesh.vert`."""
+
 NO_PLANE = (0.0, 0.0, 0.0, 0.0)
+"""Nothing is on its negative side."""
 
 OF_A_PICTURE = 3
 """Views of one picture at most: its sun's, and those of its first and of later samples."""
@@ -45,15 +50,14 @@ class View:
     Attributes:
         key: of camera, sample and shell: equal ones have the same entries. size: (width, height) in pixels.
         triangles: of the shell's boundary. projection: (4, 4) from metres round the shell's middle to clip space.
-        first, second: (4,) planes on whose negative side nothing is drawn; all 0 where there are none.
+        planes: (4,) each, on whose negative side nothing is drawn; two or none.
     """
 
     key: Hashable
     size: tuple[int, int]
     triangles: Triangles
     projection: Any
-    first: Any = NO_PLANE
-    second: Any = NO_PLANE
+    planes: tuple[Any, ...] = ()
 
 
 class _Sheet:
@@ -210,9 +214,8 @@ class Entries:
         ctx, size, fragments = self._gl.ctx, view.size, entry_sources()
         ctx.enable_only(moderngl.DEPTH_TEST | moderngl.CULL_FACE)
         query = ctx.query(samples=True)
-        for side in range(2):
-            ctx.enable_direct(CLIP_DISTANCE + side)
-        where = {"view_projection": view.projection, "clip_first": view.first, "clip_second": view.second}
+        planes = view.planes or (NO_PLANE,) * len(CLIPPING)
+        where = {"view_projection": view.projection, **dict(zip(CLIPPING, planes, strict=True))}
         layers.begin()
         for layer in range(1 + 2 * layers.rows):
             sheet, row = layers.place(layer)
@@ -222,15 +225,28 @@ class Entries:
             before, before_row = layers.place(layer - 1) if layer else (None, 0)
             rows = {"layer_row": row, "before_row": before_row} if layer else {}
             textures = {"entry_before": before.texture} if before else {}
-            with query:
+            with query, _clipped(ctx):
                 view.triangles.draw(fragments[min(layer, 1)], textures, where | rows)
             if query.samples == 0:
                 break
             layers.count = layer + 1
-        for side in range(2):
-            ctx.disable_direct(CLIP_DISTANCE + side)
         ctx.enable_only(moderngl.NOTHING)
         return layers.count < 1 + 2 * layers.rows
+
+
+@contextmanager
+def _clipped(ctx: moderngl.Context) -> Iterator[None]:
+    """Cut what is drawn at the planes that its vertices are told.
+
+    All of them are told always: llvmpipe clips by what a program writes, enabled or not.
+    """
+    for number in range(len(CLIPPING)):
+        ctx.enable_direct(CLIP_DISTANCE + number)
+    try:
+        yield
+    finally:
+        for number in range(len(CLIPPING)):
+            ctx.disable_direct(CLIP_DISTANCE + number)
 
 
 def _texture(gl: GL, size: tuple[int, int], kind: Kind) -> moderngl.Texture:

@@ -127,7 +127,7 @@ class Frame:
             matrix = view_projection(camera, size, offset, self.place.centre, near_far)
             return self.renderer.entries.find(View(key, size, triangles, matrix))
         whole = self._whole(camera, lattice, near_far)
-        view = View(key, size, triangles, lattice.projection(whole), *lattice.sides(whole))
+        view = View(key, size, triangles, lattice.projection(whole), lattice.sides(whole))
         return self.renderer.entries.find(view)
 
     def _whole(self, camera: Any, lattice: Lattice, near_far: tuple[float, float]) -> np.ndarray:

@@ -31,14 +31,12 @@ class Lattice:
 
     def uniforms(self, values: Mapping[str, Any]) -> dict[str, Any]:
         """Those of the picture's rays, for these."""
-        found: dict[str, Any] = {"picture_size": self.size, "pixel_offset": (0.5, 0.5)}
-        half = np.add(self.column, self.row) / 2
+        found: dict[str, Any] = {"picture_size": self.size, "pixel_offset": (0.0, 0.0)}
         for start, across, down in STEPS:
             dx, dy = np.asarray(values[across]), np.asarray(values[down])
             for name, (x, y) in ((across, self.column), (down, self.row)):
                 found[name] = tuple(x * dx + y * dy)
-            x, y = np.subtract(self.first, half)
-            found[start] = tuple(np.asarray(values[start]) + x * dx + y * dy)
+            found[start] = tuple(np.asarray(values[start]) + self.first[0] * dx + self.first[1] * dy)
         return found
 
     def projection(self, whole: np.ndarray) -> np.ndarray:

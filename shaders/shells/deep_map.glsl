@@ -18,9 +18,9 @@ float deep_share(vec3 point, float slack, float softness) {
     vec4 first = clamp((parts - near_at) / max(vec4(near_at.yzw, far_at.x) - near_at, 1.0), 0.0, 1.0);
     vec3 last = max((parts - far_at) / max(vec3(far_at.yz, 2.0 * far_at.z - far_at.y) - far_at, 1.0), 0.0);
     last.xy = min(last.xy, 1.0);
-    // Between two steps nearly all of the way may be empty: then the depth there is the same everywhere.
-    vec4 first_flat = (vec4(near.yzw, far.x) - vec4(near_at.yzw, far_at.x) - 0.02) / 0.96;
-    vec2 last_flat = (far.yz - far_at.yz - 0.02) / 0.96;
+    // Between two steps most of the way may be empty: then the depth there is the same everywhere.
+    vec4 first_flat = (vec4(near.yzw, far.x) - vec4(near_at.yzw, far_at.x) - SUN_LEAST) / SUN_SPAN;
+    vec2 last_flat = (far.yz - far_at.yz - SUN_LEAST) / SUN_SPAN;
     first = mix(first, first_flat, greaterThan(min(first * (1.0 - first), first_flat + 0.01), vec4(0.0)));
     last.xy = mix(last.xy, last_flat, greaterThan(min(last.xy * (1.0 - last.xy), last_flat + 0.01), vec2(0.0)));
     float depth = dot(first, SUN_FIRST) + dot(last, SUN_LAST);

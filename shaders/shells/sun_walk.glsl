@@ -16,6 +16,8 @@ const float SUN_DARK = 1.95; // depth behind the last step, from where the curve
 const float SUN_EIGHTHS = 8.0;
 const float SUN_PARTS = 64.0;     // of a texel, in which distances are counted
 const float SUN_MATTER = 1.0e-3;  // depth of a step from which on it counts as matter
+const float SUN_LEAST = 0.02;     // fraction that stands for a share of 0; 0 itself says that there is no gap
+const float SUN_SPAN = 0.96;
 const float NOWHERE = 1.0e20;     // m
 #define NEVER (2.0 * SUN_PARTS * shadow_side) // farther than the shell is wide, and few enough digits to leave some for a fraction
 
@@ -37,12 +39,17 @@ SunWay sun_way() {
 
 const vec4 SUN_NEAR_DEPTH = -log(SUN_NEAR);
 const vec3 SUN_FAR_DEPTH = -log(SUN_FAR);
+const vec4 SUN_FAR_NEXT = vec4(SUN_FAR_DEPTH, 100.0); // and one that is never passed
+
+// A depth between the step that was passed last and each of the next.
+vec4 sun_fraction(SunWay way, float depth, vec4 next) {
+    return SUN_LEAST + SUN_SPAN * clamp((depth - way.reached) / max(next - way.reached, 1.0e-6), 0.0, 1.0);
+}
 
 // The fraction of each of the next steps, if the way up to `from` is empty and the step lies at `to`: the gaps' mean depth.
 vec4 sun_flat(SunWay way, float from, vec4 next, vec4 to) {
     float gap = way.gap + max(from - way.end, 0.0), level = way.level + max(from - way.end, 0.0) * way.depth;
-    vec4 share = clamp((level / max(gap, 1.0e-9) - way.reached) / max(next - way.reached, 1.0e-6), 0.0, 1.0);
-    return mix(vec4(0.0), 0.02 + 0.96 * share, greaterThan(vec4(gap), 0.5 * (to - way.since)));
+    return mix(vec4(0.0), sun_fraction(way, level / max(gap, 1.0e-9), next), greaterThan(vec4(gap), 0.5 * (to - way.since)));
 }
 
 // at: m.
@@ -53,8 +60,8 @@ vec4 sun_laid(vec4 at, vec4 flat_share) {
 // Even matter from a distance on (m): steps of the curve that are not passed yet are laid where it would pass them.
 void sun_pass(inout SunWay way, float from, float length_of_it, float depth) {
     float slowness = length_of_it / max(depth, 1.0e-12), after = way.depth + depth;
-    vec4 near = from + (SUN_NEAR_DEPTH - way.depth) * slowness, far = from + (vec4(SUN_FAR_DEPTH, 100.0) - way.depth) * slowness;
-    vec4 near_flat = sun_flat(way, from, SUN_NEAR_DEPTH, near), far_flat = sun_flat(way, from, vec4(SUN_FAR_DEPTH, 100.0), far);
+    vec4 near = from + (SUN_NEAR_DEPTH - way.depth) * slowness, far = from + (SUN_FAR_NEXT - way.depth) * slowness;
+    vec4 near_flat = sun_flat(way, from, SUN_NEAR_DEPTH, near), far_flat = sun_flat(way, from, SUN_FAR_NEXT, far);
     // Of steps that are passed at once the first has the gap.
     vec4 before = vec4(-1.0, SUN_NEAR_DEPTH.xyz);
     near_flat *= vec4(lessThanEqual(before, vec4(way.depth)));
@@ -77,10 +84,9 @@ void sun_pass(inout SunWay way, float from, float length_of_it, float depth) {
 
 // Behind all matter: steps that were not passed are nowhere, and the depth stays as it is.
 void sun_settle(inout SunWay way) {
-    vec4 near_flat = 0.02 + 0.96 * clamp((way.depth - way.reached) / max(SUN_NEAR_DEPTH - way.reached, 1.0e-6), 0.0, 1.0);
-    vec3 far_flat = 0.02 + 0.96 * clamp((way.depth - way.reached) / max(SUN_FAR_DEPTH - way.reached, 1.0e-6), 0.0, 1.0);
-    way.near = mix(way.near, NEVER + near_flat, greaterThan(SUN_NEAR_DEPTH, vec4(way.depth)));
-    way.far = mix(way.far, NEVER + far_flat, greaterThan(SUN_FAR_DEPTH, vec3(way.depth)));
+    vec4 near = NEVER + sun_fraction(way, way.depth, SUN_NEAR_DEPTH), far = NEVER + sun_fraction(way, way.depth, SUN_FAR_NEXT);
+    way.near = mix(way.near, near, greaterThan(SUN_NEAR_DEPTH, vec4(way.depth)));
+    way.far = mix(way.far, far.xyz, greaterThan(SUN_FAR_DEPTH, vec3(way.depth)));
 }
 
 // The opaque surface ends the way. slope: by how many texels it falls within one; steps of the curve that are not passed are laid
@@ -88,9 +94,9 @@ void sun_settle(inout SunWay way) {
 void sun_stop(inout SunWay way, float end, float slope) {
     float slowness = (end - way.since) / max(way.depth - way.reached, 1.0e-6);
     vec4 near = way.since + (SUN_NEAR_DEPTH - way.reached) * slowness;
-    vec4 far = way.since + (vec4(SUN_FAR_DEPTH, 100.0) - way.reached) * slowness;
+    vec4 far = way.since + (SUN_FAR_NEXT - way.reached) * slowness;
     near = min(sun_laid(near, sun_flat(way, end, SUN_NEAR_DEPTH, vec4(end))), NEVER);
-    far = min(sun_laid(far, sun_flat(way, end, vec4(SUN_FAR_DEPTH, 100.0), vec4(end))), NEVER);
+    far = min(sun_laid(far, sun_flat(way, end, SUN_FAR_NEXT, vec4(end))), NEVER);
     bool begun = way.reached > 0.0;
     sun_settle(way);
     way.stop = floor(SUN_EIGHTHS * (end / shadow_texel + slope)) + 0.01 + 0.98 * exp(-way.depth);

@@ -16,6 +16,7 @@ from renderer.gl.context import GL
 from renderer.gl.targets import Target
 from renderer.gl.thread import GLThread
 from renderer.shells.bakes import bakes
+from renderer.shells.entries import Entries, Layers, View
 from renderer.shells.renderer import ShellsRenderer
 from renderer.shells.state import ShellsState
 
@@ -71,14 +72,15 @@ def baked_of(state: ShellsState) -> Mapping[str, BakedArrays]:
 
 def drawn(
     gl: GL, state: ShellsState, baked: Mapping[str, BakedArrays], size: tuple[int, int] = SIZE,
-    offset: tuple[float, float] = (0.5, 0.5), sample: int = 0,
+    offset: tuple[float, float] = (0.5, 0.5), *samples: int,
 ) -> np.ndarray:
-    """One sample."""
+    """The last of some samples that one renderer draws, by default the first."""
     renderer, target = ShellsRenderer(gl), Target(gl, *size)
     try:
-        prepared = renderer.prepare(state, baked, size, offset, sample)
-        target.use()
-        renderer.draw(prepared)
+        for sample in samples or (0,):
+            prepared = renderer.prepare(state, baked, size, offset, sample)
+            target.use()
+            renderer.draw(prepared)
         return target.read().astype(np.float64)
     finally:
         renderer.release()
@@ -132,6 +134,33 @@ def test_even_light_is_even_up_to_the_rim(thread: GLThread, rays: int, size: tup
     found = thread.call(drawn, sampled(rays, **GROUND), baked_of(sampled(rays, **GROUND)), size)
     assert found[..., 3].min() > 0
     np.testing.assert_allclose(found, np.broadcast_to(found[4, 4], found.shape), rtol=0.02)
+
+
+def test_nothing_is_drawn_beside_the_picture(
+    thread: GLThread, monkeypatch: pytest.MonkeyPatch, spoil: Spoil
+) -> None:
+    """A shell beyond the rim of the picture on all sides: of slanting rows, what leads out of it stays empty."""
+    covered, find = [], Entries.find
+
+    def counted(entries: Entries, view: View) -> Layers:
+        layers = find(entries, view)
+        faces = np.frombuffer(layers.first.texture.read(), "f4").reshape(*view.size[::-1], 2)[..., 0]
+        covered.append((view.size, int((faces >= 0).sum())))
+        return layers
+
+    monkeypatch.setattr(Entries, "find", counted)
+    state = sampled(2, **GROUND)
+    thread.call(drawn, state, baked_of(state), (16, 12))
+    assert covered[-1] == ((6 + 8, 12), 16 * 12 // 2)
+    with spoil("stages/mesh.vert", "dot(clip_first, place)", "1.0"):
+        thread.call(drawn, state, baked_of(state), (16, 12))
+    assert covered[-1][1] > 16 * 12 // 2
+
+
+def test_a_first_sample_leaves_nothing_to_later_ones(thread: GLThread, baked: Mapping[str, BakedArrays]) -> None:
+    alone = thread.call(drawn, sampled(2), baked, SIZE, (0.5, 0.5), 1)
+    after = thread.call(drawn, sampled(2), baked, SIZE, (0.5, 0.5), 0, 1)
+    np.testing.assert_array_equal(after, alone)
 
 
 def test_half_the_rays_are_as_near_to_the_picture_and_later_samples_have_all(

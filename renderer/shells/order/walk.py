@@ -34,8 +34,10 @@ class Walk(OrderTechnique):
         """Find where rays come in, and walk; what is gathered goes before the background."""
         inside = frame.values["start_tet"] >= 0
         sampling, rays = frame.state.sampling.first_sample()
-        # From within the shell every pixel's ray is followed far, so that half of them are too many.
-        rays = 1 if inside and rays == 2 else rays if min(frame.size) > 1 else 4
+        if inside and rays == 2:
+            rays = 1  # rays are followed everywhere then, and slanting rows would have as many again beside the picture
+        if min(frame.size) == 1:
+            rays = 4  # a ray of every second pixel has no neighbours across
         if frame.sample == 0 and rays < 4:
             gathered, more = rays_of_some(frame, frame.state.model_copy(update={"sampling": sampling}), rays, inside)
             source, values = spread_source(frame.state, rays), {**frame.values, **more}
