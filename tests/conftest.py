@@ -67,7 +67,8 @@ def spoil(monkeypatch: pytest.MonkeyPatch) -> Callable[[str, str, str], Abstract
     from renderer.gl import source
     from renderer.shells import program as shells
 
-    composed = (clouds.composed, forest._composed, forest.pass_source, shells.composed, directional.composed)
+    forests = forest._composed, forest.pass_source
+    composed = (source.stage, clouds.composed, *forests, shells.composed, directional.composed)
 
     @contextmanager
     def spoiled(file: str, right: str, wrong: str) -> Iterator[None]:

@@ -10,9 +10,9 @@ This module is the one to import: how a parameter is declared (`declaration`), h
 
 from __future__ import annotations
 
+import functools
 import math
 import re
-from collections.abc import Iterator
 from typing import Any
 
 from pydantic import BaseModel
@@ -94,11 +94,10 @@ def bake_arguments(model: BaseModel) -> dict[str, Any]:
             if name == "kind" or facts(type(model).model_fields[name]).get("cost") == "bake"}
 
 
-def _declared(model: type[BaseModel], cost: Cost) -> Iterator[tuple[str, FieldInfo, str]]:
-    for name, field in model.model_fields.items():
-        kind = glsl_type(field.annotation)
-        if name != "kind" and kind is not None and facts(field).get("cost") == cost:
-            yield name, field, kind
+@functools.cache
+def _declared(model: type[BaseModel], cost: Cost) -> tuple[tuple[str, FieldInfo, str], ...]:
+    kinds = ((name, field, glsl_type(field.annotation)) for name, field in model.model_fields.items() if name != "kind")
+    return tuple((name, field, kind) for name, field, kind in kinds if kind and facts(field).get("cost") == cost)
 
 
 def _named(field: FieldInfo) -> list[str]:

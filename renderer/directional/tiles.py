@@ -16,8 +16,7 @@ from numpy.typing import NDArray
 
 from renderer.gl.context import GL
 from renderer.gl.program import AnyTexture, bind_textures, set_uniforms
-from renderer.gl.source import Source
-from renderer.gl.targets import stage
+from renderer.gl.source import Source, stage
 from renderer.world.camera import Orthographic, pose
 
 TILE = 8

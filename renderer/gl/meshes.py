@@ -10,7 +10,7 @@ import numpy as np
 
 from renderer.gl.context import GL
 from renderer.gl.program import AnyTexture, bind_textures, set_uniforms
-from renderer.gl.source import Source, assemble
+from renderer.gl.source import Source, stage
 
 VERTEX_BYTES = 16
 """A place and the triangle's number, in single precision."""
@@ -48,7 +48,7 @@ class Triangles:
         """
         if self._buffer is None:
             return
-        program = self._gl.programs.get(_vertex(), fragment)
+        program = self._gl.programs.get(stage("stages/mesh.vert"), fragment)
         bind_textures(program, textures)
         set_uniforms(program, values)
         array = self._gl.ctx.vertex_array(program, [(self._buffer, "3f 1f", "position", "owner")])
@@ -69,7 +69,3 @@ def _packed(corners: np.ndarray, owner: np.ndarray) -> bytes:
     data[..., :3] = corners
     data[..., 3] = owner[:, None]
     return data.tobytes()
-
-
-def _vertex() -> Source:
-    return assemble(["stages/mesh.vert"])

@@ -9,8 +9,7 @@ import moderngl
 
 from renderer.gl.context import GL
 from renderer.gl.program import AnyTexture, bind_textures, set_uniforms
-from renderer.gl.source import Source
-from renderer.gl.targets import stage
+from renderer.gl.source import Source, stage
 
 Where = tuple[Literal["<", ">", "==", "always"], float]
 """A test of a pixel's depth: how the number, in [0, 1], stands to it where the pixel is drawn."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import re
 from collections import OrderedDict
 from collections.abc import Callable, Iterable, Mapping
@@ -16,6 +15,8 @@ from renderer.core.errors import ShaderError, UmbrageError
 from renderer.gl.source import Source, without_comments
 
 AnyTexture = moderngl.Texture | moderngl.Texture3D | moderngl.TextureArray | moderngl.TextureCube
+Texts = tuple[str, str]
+"""Of a program's two stages."""
 
 _STAGE = re.compile(r"^(\w+)\n=+$", re.MULTILINE)
 _MESSAGES = (
@@ -48,9 +49,9 @@ class ProgramCache:
         self._ctx = ctx
         self._finish = finish
         self._limit = limit
-        self._programs: OrderedDict[str, moderngl.Program] = OrderedDict()
-        self._screens: dict[str, moderngl.VertexArray] = {}
-        self._keys: dict[int, str] = {}
+        self._programs: OrderedDict[Texts, moderngl.Program] = OrderedDict()
+        self._screens: dict[Texts, moderngl.VertexArray] = {}
+        self._keys: dict[int, Texts] = {}
 
     def __len__(self) -> int:
         return len(self._programs)
@@ -61,7 +62,7 @@ class ProgramCache:
         Raises:
             ShaderError: the compiler's first complaint, at its true file and line.
         """
-        key = hashlib.sha256(f"{vertex.text}\0{fragment.text}".encode()).hexdigest()
+        key = vertex.text, fragment.text
         if key in self._programs:
             self._programs.move_to_end(key)
             return self._programs[key]
@@ -98,7 +99,7 @@ class ProgramCache:
         for key in list(self._programs):
             self._release(key)
 
-    def _release(self, key: str) -> None:
+    def _release(self, key: Texts) -> None:
         if key in self._screens:
             self._screens.pop(key).release()
         program = self._programs.pop(key)

@@ -81,6 +81,12 @@ def assemble(
     return Source("\n".join(text for text, _, _ in lines) + "\n", tuple((file, number) for _, file, number in lines))
 
 
+@functools.cache
+def stage(file: str, declarations: str = "") -> Source:
+    """The stage of a file that stands alone but for its declarations, assembled once."""
+    return assemble([file], declarations=declarations)
+
+
 def without_comments(text: str) -> str:
     """The text with every comment blanked, its lines still where they were."""
     return _COMMENT.sub(lambda match: "\n" * match.group().count("\n") or " ", text)

@@ -5,7 +5,6 @@ Textures drawn into have the bottom row first, as OpenGL counts; every array rea
 
 from __future__ import annotations
 
-import functools
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from typing import Any, Literal
@@ -17,7 +16,7 @@ from renderer.core.errors import UmbrageError
 from renderer.gl.context import GL
 from renderer.gl.layers import check_drawable
 from renderer.gl.program import AnyTexture, bind_textures, set_uniforms
-from renderer.gl.source import Source, assemble
+from renderer.gl.source import Source, stage
 
 Curve = Literal["linear", "filmic"]
 
@@ -270,12 +269,6 @@ def run_covered(gl: GL, fragment: Source, textures: Mapping[str, AnyTexture], va
     gl.programs.draw(program)
     gl.ctx.depth_func = "<"
     gl.ctx.enable_only(moderngl.NOTHING)
-
-
-@functools.cache
-def stage(file: str) -> Source:
-    """The stage of a file that stands alone."""
-    return assemble([file])
 
 
 def _copy(gl: GL, texture: moderngl.Texture, divisor: float, add: bool = False) -> None:

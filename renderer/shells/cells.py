@@ -12,7 +12,7 @@ from renderer.core.technique import Arrays
 from renderer.gl.context import GL
 from renderer.gl.meshes import Triangles
 from renderer.gl.program import AnyTexture, bind_textures, set_uniforms
-from renderer.gl.source import Source, assemble
+from renderer.gl.source import Source, stage
 from renderer.shells.resident import Placed, faces_of
 from renderer.shells.world_scale import BASE
 from renderer.world.camera import Orthographic, pose
@@ -65,7 +65,7 @@ class Cells:
         """Draw the arranged faces into the bound framebuffer, as the pipeline's switches are set."""
         if self._indices is None:
             return
-        program = self._gl.programs.get(_vertex(), fragment)
+        program = self._gl.programs.get(stage("shells/cells.vert", VERTEX), fragment)
         bind_textures(program, textures)
         set_uniforms(program, values)
         # A stage that only counts reads no number, and its compiler leaves it out.
@@ -103,7 +103,3 @@ def facing(shell: Arrays, camera: Any) -> np.ndarray:
     if isinstance(camera, Orthographic):
         return np.asarray(planes[..., :3] @ at.forward < 0)
     return np.asarray(planes[..., :3] @ at.eye + planes[..., 3] > 0)
-
-
-def _vertex() -> Source:
-    return assemble(["shells/cells.vert"], declarations=VERTEX)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Hashable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -12,7 +13,7 @@ from renderer.core.technique import Arrays
 from renderer.gl.context import GL
 from renderer.gl.meshes import Triangles
 from renderer.shells.animation_scene import Moment
-from renderer.shells.resident import Placed, base_texels, boundary_faces, faces_of, gradients, tet_texels
+from renderer.shells.resident import Placed, base_texels, boundary_faces, faces_of, placed, tet_texels
 from renderer.shells.world_scale import TET_ROW, TET_TEXELS
 
 
@@ -26,7 +27,8 @@ class Following:
 
     def __init__(self, gl: GL, key: Hashable, rest: Arrays, base: bool) -> None:
         self.key = key
-        self.centre = (rest["positions"].min(axis=0) + rest["positions"].max(axis=0)) / 2
+        self._rest = placed(rest)
+        self.centre = self._rest.centre
         self.written = 0
         """Tetrahedra written at the last moment."""
         self._shown: Hashable = None
@@ -34,7 +36,6 @@ class Following:
         self._base = base_texels(rest)
         self._tet, self._face = boundary_faces(rest["neighbour"], base)
         self._neighbour = rest["neighbour"]
-        self._gradients = gradients(rest)
         self.objects: dict[str, Any] = {
             "shell_tets": gl.texture2d(self._tets, "nearest"),
             "shell_base": gl.texture2d(self._base, "nearest"),
@@ -48,7 +49,7 @@ class Following:
             self._write(now, now.changed if known else np.arange(len(now.shell["tets"])))
             self._shown = now.key
         away = ((now.shell["positions"] - self.centre) ** 2).sum(axis=1)
-        return self.objects, Placed(self.centre, float(np.sqrt(away.max())), self._gradients)
+        return self.objects, replace(self._rest, radius=float(np.sqrt(away.max())))
 
     def release(self) -> None:
         """Free everything."""

@@ -32,7 +32,7 @@ def coarsest(state: ShellsState, place: Placed, shape: Sequence[int], size: tupl
     """Level whose voxels are as wide as a pixel of the camera or of the sun's picture at the farthest place of the
     shell, at most; of no bias, and below 0 for voxels that are wider."""
     away = float(np.linalg.norm(pose(state.camera).eye - place.centre)) + place.radius
-    voxels = float((place.gradients * (shape[2], shape[1])).min(axis=1).max())
+    voxels = float((place.steepest * (shape[2], shape[1])).min(axis=1).max())
     sun = 2.02 * place.radius / getattr(state.shadow, "resolution", math.inf)
     angle, side = pixel(state, size)
     return math.log2(max(voxels * max(side + angle * away, sun), 1e-9))

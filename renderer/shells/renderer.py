@@ -91,7 +91,7 @@ class ShellsRenderer:
             "sample_shift": float(sample),
             "texture_slide": then.slide,
             "buffer_white": state.accumulation.white_radiance(),
-            "start_tet": holding(arrays["shell"], state.camera),
+            "start_tet": holding(arrays["shell"], place, state.camera),
             "matter_scale": texture.scale * state.voxels.density,
             "reference_length": reference_length(arrays["texture"], state.extrusion.thickness),
             "normal_coding": texture.coding,
@@ -247,11 +247,13 @@ def _painted(gl: GL, picture: np.ndarray, globe: bool) -> Mapping[str, AnyTextur
     return {"base_picture": texture}
 
 
-def holding(shell: Arrays, camera: Any) -> int:
+def holding(shell: Arrays, place: Placed, camera: Any) -> int:
     """Number of the tetrahedron that holds the camera, or -1."""
     if isinstance(camera, Orthographic):
         return -1
     eye = pose(camera).eye
+    if np.linalg.norm(eye - place.centre) > place.radius:
+        return -1
     inside = (shell["planes"][..., :3] @ eye + shell["planes"][..., 3] <= 0).all(axis=1)
     return int(np.argmax(inside)) if inside.any() else -1
 

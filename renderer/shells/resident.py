@@ -22,24 +22,28 @@ class Placed:
         centre: (3,) middle of its bounding box [m], which everything on the GPU is counted from.
         radius: of the sphere round it that holds the shell [m].
         gradients: (T, 2) lengths of the gradients of u and v in each tetrahedron [1/m]; at rest, where it moves.
+        steepest: (S, 2) those of them that no other exceeds in both.
     """
 
     centre: np.ndarray
     radius: float
     gradients: np.ndarray
+    steepest: np.ndarray
 
 
 def placed(shell: Arrays) -> Placed:
     """The sphere round a shell."""
     positions = shell["positions"]
     centre = (positions.min(axis=0) + positions.max(axis=0)) / 2
-    return Placed(centre, float(np.sqrt(((positions - centre) ** 2).sum(axis=1).max())), gradients(shell))
-
-
-def gradients(shell: Arrays) -> np.ndarray:
-    """Lengths of the gradients of u and v in each tetrahedron, (T, 2) [1/m]."""
     lengths: np.ndarray = np.linalg.norm(shell["to_texture"][:, :2, :3], axis=2)
-    return lengths
+    return Placed(centre, float(np.sqrt(((positions - centre) ** 2).sum(axis=1).max())), lengths, steepest(lengths))
+
+
+def steepest(pairs: np.ndarray) -> np.ndarray:
+    """(S, 2) of pairs (T, 2), those that no other exceeds in both numbers."""
+    falling = pairs[np.lexsort((-pairs[:, 1], -pairs[:, 0]))]
+    before = np.maximum.accumulate(np.concatenate([[-np.inf], falling[:-1, 1]]))
+    return np.asarray(falling[falling[:, 1] > before])
 
 
 def tet_texels(shell: Arrays, centre: np.ndarray) -> np.ndarray:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import OrderedDict
 from collections.abc import Hashable, Mapping
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import moderngl
@@ -12,7 +13,7 @@ import numpy as np
 from renderer.core.technique import BakedArrays
 from renderer.gl.context import GL
 from renderer.gl.program import AnyTexture, bind_textures, set_uniforms
-from renderer.gl.source import Source, assemble
+from renderer.gl.source import Source, assemble, stage
 from renderer.gl.targets import Target
 from renderer.shells.frame import FAR, reach, sun_camera, sun_values
 from renderer.shells.program import chosen, composed, variant_of
@@ -84,7 +85,7 @@ class ThingMesh:
         self._gl = gl
         self.key = key
         middle, radius = sphere_round(placed.corners)
-        self.place = Placed(middle, radius, place.gradients)
+        self.place = replace(place, centre=middle, radius=radius)
         level = np.array([isinstance(thing, Ground) for thing in things.list])[placed.owner]
         # A square that all stands on need not be within the map: it casts no shadow but below itself.
         casting = placed.corners[~level]
@@ -97,7 +98,7 @@ class ThingMesh:
 
     def draw(self, fragment: Source, textures: Mapping[str, AnyTexture], values: Mapping[str, Any]) -> None:
         """Draw them into the bound framebuffer, as the pipeline's switches are set."""
-        program = self._gl.programs.get(_vertex(), fragment)
+        program = self._gl.programs.get(stage("shells/things.vert"), fragment)
         bind_textures(program, textures)
         set_uniforms(program, values)
         # A stage that reads less has fewer attributes: the compiler leaves the others out.
@@ -148,8 +149,9 @@ class ThingMesh:
             self._map[1].release()
 
     def _draw_map(self, target: Target, sun: np.ndarray, resolution: int) -> dict[str, Any]:
-        camera = sun_camera(Placed(*self._casters, self.place.gradients), sun)
-        seen = sun_values(camera, Placed(self._centre, self.place.radius, self.place.gradients), resolution)
+        middle, radius = self._casters
+        camera = sun_camera(replace(self.place, centre=middle, radius=radius), sun)
+        seen = sun_values(camera, replace(self.place, centre=self._centre), resolution)
         values = {name.replace("shadow_", "thing_"): value for name, value in seen.items() if "shadow_" in name}
         size = (resolution, resolution)
         matrix = view_projection(camera, size, (0.5, 0.5), self._centre, reach(camera, self.place))
@@ -200,10 +202,6 @@ def met_source(state: ShellsState) -> Source:
 
 def _map_source() -> Source:
     return assemble([], declarations=MAP_DECLARATIONS, body=MAP_BODY)
-
-
-def _vertex() -> Source:
-    return assemble(["shells/things.vert"])
 
 
 def _packed(placed: PlacedThings, centre: np.ndarray) -> bytes:
