@@ -1,7 +1,8 @@
 """The six scenes of Dufort 2005, table 6.1, as drawn by default and with the thesis' own settings, side by side.
 
-Error of the converged picture against the reference, noise of one frame, and what a frame takes in yardsticks. What is
-judged is the middle of the picture that is timed, so that its voxels are as wide on the screen.
+Error of the converged picture against the reference, noise of one frame, and what a frame takes in yardsticks. Judged
+are the middle of the picture that is timed, where voxels are as wide on the screen, several pixels; and the whole of a
+smaller one, as other studies have it, where pixels are as wide as voxels and wider.
 """
 
 from __future__ import annotations
@@ -65,17 +66,18 @@ def sets_of(preset: str, setting: str) -> dict[str, Any]:
 
 
 def measure(
-    session: Session, presets: Sequence[str], size: int, frames: int, tell: Tell | None = None
+    session: Session, presets: Sequence[str], size: int, whole: int, frames: int, tell: Tell | None = None
 ) -> list[dict[str, Any]]:
     """One line a preset and setting.
 
     Args:
-        presets: of `SAMPLES`. size: side of the pictures that are judged, pixels. frames: timed of each, 0 for none.
-        tell: told the share done.
+        presets: of `SAMPLES`. size, whole: sides of the middle and of the whole picture that are judged, pixels; 0 for
+            no whole one. frames: timed of each, 0 for none. tell: told the share done.
 
     Returns:
-        `preset`, `setting`, `relative_rmse`, `pairing`, `standard_error`, and what a frame takes in yardsticks by
-        processor time, `camera` and `sun` moving, and by the clock, `camera_clock` and `sun_clock`.
+        `preset`, `setting`, `relative_rmse`, `pairing`, `standard_error`, the same of the whole picture as
+        `whole_relative_rmse` and so on, and what a frame takes in yardsticks by processor time, `camera` and `sun`
+        moving, and by the clock, `camera_clock` and `sun_clock`.
     """
     lines = []
     for number, preset in enumerate(presets):
@@ -83,18 +85,28 @@ def measure(
             tell(number / len(presets), preset)
         states = {setting: session.state("shells", preset, sets_of(preset, setting)) for setting in SETTINGS}
         taken = times(session, states, frames)
-        for setting, whole in states.items():
-            state = middle(whole, size)
-            found = truth(session, state, size, size)
-            judged = reference(found, state.view, session.exposure_ev(state))
-            numbers = compare(converged(session, state, size, size), judged)
+        for setting, state in states.items():
+            of_whole = judged(session, state, whole) if whole else {}
             lines.append({
-                "preset": preset, "setting": setting, "size": size, "frames": frames, **taken[setting],
-                "relative_rmse": numbers["relative_rmse"], "pairing": numbers["pairing"],
-                "standard_error": numbers["reference_standard_error"],
+                "preset": preset, "setting": setting, "size": size, "whole": whole, "frames": frames, **taken[setting],
+                **judged(session, middle(state, size), size),
+                **{f"whole_{name}": number for name, number in of_whole.items()},
                 "machine": provenance(session.gl.info.renderer),
             })  # fmt: skip
     return lines
+
+
+def judged(session: Session, state: SceneState, size: int) -> dict[str, float]:
+    """How a picture of `size` pixels a side converges to its reference, and how far one frame is from there."""
+    found = truth(session, state, size, size)
+    numbers = compare(
+        converged(session, state, size, size), reference(found, state.view, session.exposure_ev(state))
+    )
+    return {
+        "relative_rmse": numbers["relative_rmse"],
+        "pairing": numbers["pairing"],
+        "standard_error": numbers["reference_standard_error"],
+    }
 
 
 def middle(state: SceneState, size: int) -> SceneState:
@@ -137,7 +149,9 @@ def _both(work: Callable[[], Any]) -> tuple[float, float]:
 
 
 COLUMNS = (
-    ("error", "relative_rmse"), ("one frame's noise", "pairing"), ("camera moving", "camera"), ("sun moving", "sun"),
+    ("error", "relative_rmse"), ("one frame's noise", "pairing"),
+    ("error of the whole", "whole_relative_rmse"), ("its one frame's noise", "whole_pairing"),
+    ("camera moving", "camera"), ("sun moving", "sun"),
 )  # fmt: skip
 
 
@@ -155,14 +169,17 @@ def table(lines: Sequence[Mapping[str, Any]]) -> str:
 def write(lines: Sequence[Mapping[str, Any]], folder: Path) -> str:
     """Write `FILES`, and return the page's text."""
     folder.mkdir(parents=True, exist_ok=True)
-    machine, noise = lines[0]["machine"], max(line["standard_error"] for line in lines)
+    machine, whole = lines[0]["machine"], lines[0]["whole"]
+    noise = max(line.get(name, 0.0) for line in lines for name in ("standard_error", "whole_standard_error"))
     text = (
         f"The six rows of Dufort 2005, table 6.1: {machine['renderer']}, {machine['cores']} cores\n\n"
         f"By default, and with the thesis' settings: its samples a segment, sorted by SXMPVO, a plain shadow map, the "
         f"finest voxels, sums in halves. Error: relative RMSE of the converged picture's middle, {lines[0]['size']} of "
         f"{SIDE} pixels a side, against the reference, whose standard error is {noise:.2g} at most. One frame's noise: "
         f"its distance from the converged picture, over that of the reference with one ray a pixel; up to 1.25 a frame "
-        f"counts as the picture. Moving: one frame of {SIDE} x {SIDE} in yardsticks of processor time, median of "
+        f"counts as the picture. The whole: the same of a picture {whole} pixels a side, whose pixels are as wide as "
+        f"voxels and wider; in the middle a voxel is several pixels wide, and one ray of the reference tells nearly "
+        f"all of a pixel. Moving: one frame of {SIDE} x {SIDE} in yardsticks of processor time, median of "
         f"{lines[0]['frames']}.\n\n{table(lines)}"
     )
     (folder / FILES[0]).write_text(text, encoding="utf-8")

@@ -17,6 +17,7 @@ def add(commands: Any) -> None:
     command = commands.add_parser("headline", help="six scenes of shells: error and time beside the thesis' settings")
     command.add_argument("--presets", metavar="NAME,..", default="all", help="all, or names (default %(default)s)")
     command.add_argument("--size", type=int, default=48, help="side of what is judged, px (default %(default)s)")
+    command.add_argument("--whole", type=int, default=128, help="of whole pictures, px, or 0 (default %(default)s)")
     command.add_argument("--frames", type=int, default=9, help="timed of each, 0 for no times (default %(default)s)")
     command.add_argument("--docs", action="store_true", help="copy the table into docs/study")
     command.set_defaults(run=run)
@@ -28,6 +29,8 @@ def run(given: argparse.Namespace) -> int:
 
     if not 16 <= given.size <= 256:
         raise InputError("--size", f"{given.size} is not studied", "16 to 256 px")
+    if given.whole and not 16 <= given.whole <= 256:
+        raise InputError("--whole", f"{given.whole} is not studied", "16 to 256 px, or 0")
     if given.frames < 0:
         raise InputError("--frames", "cannot be negative", "0 for no times")
     presets = names_of("--presets", given.presets, tuple(headline_study.SAMPLES))
@@ -35,7 +38,7 @@ def run(given: argparse.Namespace) -> int:
     tell = Teller("headline")
     try:
         with Session() as session:
-            lines = headline_study.measure(session, presets, given.size, given.frames, tell)
+            lines = headline_study.measure(session, presets, given.size, given.whole, given.frames, tell)
         text = headline_study.write(lines, folder)
     finally:
         tell.bar.close()

@@ -21,8 +21,9 @@ def state(preset: str, setting: str) -> Any:
 
 def line(preset: str, setting: str, error: float) -> dict[str, Any]:
     return {
-        "preset": preset, "setting": setting, "size": 48, "frames": 3, "relative_rmse": error, "pairing": 2 * error,
-        "standard_error": error / 100, "camera": 10 * error, "sun": 20 * error,
+        "preset": preset, "setting": setting, "size": 48, "whole": 128, "frames": 3, "relative_rmse": error,
+        "pairing": 2 * error, "standard_error": error / 100, "whole_relative_rmse": 3 * error,
+        "whole_pairing": 4 * error, "whole_standard_error": error / 200, "camera": 10 * error, "sun": 20 * error,
         "machine": {"renderer": "none", "cores": 2},
     }  # fmt: skip
 
@@ -47,14 +48,17 @@ def test_the_middle_has_the_same_rays() -> None:
 def test_numbers_stand_in_their_columns(tmp_path: Path) -> None:
     lines = [line("tube_rocks", "thesis", 0.3), line("tube_rocks", "default", 0.2)]
     text = headline_study.write(lines, tmp_path)
-    assert "| `tube_rocks` | 10 | 0.2 | 0.4 | 2 | 4 | 0.3 | 0.6 | 3 | 6 |" in text
+    assert "| `tube_rocks` | 10 | 0.2 | 0.4 | 0.6 | 0.8 | 2 | 4 | 0.3 | 0.6 | 0.9 | 1.2 | 3 | 6 |" in text
     assert "standard error is 0.003 at most" in text
     assert json.loads((tmp_path / "results.json").read_text()) == lines
 
 
 @pytest.mark.parametrize(
     ("words", "field"),
-    [(["--size", "8"], "--size"), (["--frames", "-1"], "--frames"), (["--presets", "fur"], "--presets")],
+    [
+        (["--size", "8"], "--size"), (["--whole", "8"], "--whole"), (["--frames", "-1"], "--frames"),
+        (["--presets", "fur"], "--presets"),
+    ],
 )
 def test_what_is_refused(words: list[str], field: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert cli.main(["headline", *words]) != 0

@@ -70,7 +70,7 @@ PRESETS = {
             "base": {"colour": [0.1, 0.06, 0.03]},
             "camera": _camera(3.2, 165, 22),
             "sun": _sun(110, 40),
-            "sampling": {"first_places": 6},
+            "sampling": {"first_places": 9},
         },
     ),
     "teapot_table": Preset(
@@ -137,7 +137,7 @@ PRESETS = {
             "base": _HOLLOW,
             "camera": _camera(3.6, 180, 12),
             "sun": _sun(230, 40),
-            "sampling": {"first_places": 6},
+            "sampling": {"rate": 1.1, "first_places": 12},
         },
     ),
     "plane_fog": Preset(
@@ -150,7 +150,7 @@ PRESETS = {
             "base": {"colour": [0.2, 0.26, 0.07]},
             "camera": _camera(4.0, 200, 22, 40),
             "sun": _sun(290, 25),
-            "sampling": _SPARSE, "shadow": {"close": 1},
+            "sampling": {**_SPARSE, "rate": 0.9, "most": 20}, "shadow": {"close": 1},
         },
     ),
     "tube_rocks": Preset(
@@ -163,7 +163,7 @@ PRESETS = {
             "base": {"colour": [0.1, 0.09, 0.08]},
             "camera": _camera(3.4, 160, 14),
             "sun": _sun(95, 35),
-            "sampling": {"first_places": 2}, "shadow": {"close": 2},
+            "sampling": {"first_places": 3, "most": 16}, "shadow": {"close": 2},
         },
     ),
     "fur_growing": Preset(

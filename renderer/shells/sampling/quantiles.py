@@ -29,7 +29,7 @@ class Quantiles(ShellsTechnique):
         ge=1, le=14,
     )  # fmt: skip
     most: int = param(
-        16, label="Most samples", help="Of one segment.", cost="build", unit="count", ge=1, le=4096
+        24, label="Most samples", help="Of one segment.", cost="build", unit="count", ge=1, le=4096
     )
 
     first_rays: Literal[1, 2, 4] = param(
