@@ -57,7 +57,7 @@ PRESETS = {
             "base": _HOLLOW,
             "camera": _camera(3.2, 200, 20),
             "sun": _sun(150, 50),
-            "sampling": _SPARSE,
+            "sampling": {**_SPARSE, "rate": 0.7}, "shadow": {"resolution": 224},
         },
     ),
     "teapot_wicker": Preset(
@@ -70,7 +70,7 @@ PRESETS = {
             "base": {"colour": [0.1, 0.06, 0.03]},
             "camera": _camera(3.2, 165, 22),
             "sun": _sun(110, 40),
-            "sampling": {"first_places": 6}, "shadow": {"reach": 1.25},
+            "sampling": {"rate": 1.1, "first_places": 6}, "shadow": {"reach": 1.25},
         },
     ),
     "teapot_table": Preset(
@@ -163,7 +163,7 @@ PRESETS = {
             "base": {"colour": [0.1, 0.09, 0.08]},
             "camera": _camera(3.4, 160, 14),
             "sun": _sun(95, 35),
-            "sampling": {"first_places": 2, "most": 16}, "shadow": {"close": 2},
+            "sampling": {"rate": 1.0, "first_places": 2, "most": 16}, "shadow": {"close": 2},
         },
     ),
     "fur_growing": Preset(
