@@ -48,6 +48,11 @@ WARM = 2
 
 FILES = ("headline.md", "results.json")
 
+WHOLE = (
+    "The whole: the same of a picture {} pixels a side, whose pixels are as wide as voxels and wider; in the middle a "
+    "voxel is several pixels wide, and one ray of the reference tells nearly all of a pixel. "
+)
+
 Tell = Callable[[float, str], None]
 
 
@@ -177,10 +182,8 @@ def write(lines: Sequence[Mapping[str, Any]], folder: Path) -> str:
         f"finest voxels, sums in halves. Error: relative RMSE of the converged picture's middle, {lines[0]['size']} of "
         f"{SIDE} pixels a side, against the reference, whose standard error is {noise:.2g} at most. One frame's noise: "
         f"its distance from the converged picture, over that of the reference with one ray a pixel; up to 1.25 a frame "
-        f"counts as the picture. The whole: the same of a picture {whole} pixels a side, whose pixels are as wide as "
-        f"voxels and wider; in the middle a voxel is several pixels wide, and one ray of the reference tells nearly "
-        f"all of a pixel. Moving: one frame of {SIDE} x {SIDE} in yardsticks of processor time, median of "
-        f"{lines[0]['frames']}.\n\n{table(lines)}"
+        f"counts as the picture. {WHOLE.format(whole) if whole else ''}Moving: one frame of {SIDE} x {SIDE} in "
+        f"yardsticks of processor time, median of {lines[0]['frames']}.\n\n{table(lines)}"
     )
     (folder / FILES[0]).write_text(text, encoding="utf-8")
     (folder / FILES[1]).write_text(json.dumps(list(lines), indent=1), encoding="utf-8")
